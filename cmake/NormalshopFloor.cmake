@@ -1,0 +1,23 @@
+# normalshop_floor(NAME SOURCES ... [FLOORS ...] [PRIVATE_LIBRARIES ...])
+# One floor = one static library normalshop::NAME. FLOORS are the floors below it that its public
+# headers use; third-party packages of a floor stay private to its .cpp files.
+function(normalshop_floor name)
+  cmake_parse_arguments(FLOOR "" "" "SOURCES;FLOORS;PRIVATE_LIBRARIES" ${ARGN})
+  add_library(normalshop_${name} STATIC ${FLOOR_SOURCES})
+  add_library(normalshop::${name} ALIAS normalshop_${name})
+  target_include_directories(normalshop_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  list(TRANSFORM FLOOR_FLOORS PREPEND normalshop::)
+  target_link_libraries(
+    normalshop_${name}
+    PUBLIC ${FLOOR_FLOORS} Eigen3::Eigen
+    PRIVATE ${FLOOR_PRIVATE_LIBRARIES} normalshop::compiler)
+endfunction()
+
+# normalshop_test(NAME SOURCES ... LIBRARIES ...): one GoogleTest program for a folder of tests.
+function(normalshop_test name)
+  cmake_parse_arguments(TEST "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(test_${name} ${TEST_SOURCES})
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main normalshop::compiler)
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "normalshop/core/raw_image.h"
+
+namespace normalshop {
+
+/// What a stored normal's components refer to. World is object space after the file's node
+/// transforms; meshes are loaded with those applied, so both decode alike.
+enum class NormalSpace { Tangent, Object, World };
+constexpr auto names_of(NormalSpace) {
+  return std::array<std::string_view, 3>{"tangent", "object", "world"};
+}
+
+/// How codes stand for a normal. Tangent space: x along T, y along B (green up).
+struct NormalConvention {
+  NormalSpace space = NormalSpace::Tangent;
+  bool green_down = false;    ///< y is stored negated ("DirectX")
+  bool two_channel = false;   ///< only x and y are stored; z = sqrt(1 - x^2 - y^2)
+  bool centred_code = false;  ///< integer codes: 128 (32768) stands for 0 exactly, not 127.5
+  bool signed_float = false;  ///< float codes are components themselves, not (n + 1) / 2
+
+  bool operator==(const NormalConvention&) const = default;
+};
+
+/// component = code * scale + offset.
+struct CodeRange {
+  float scale;
+  float offset;
+};
+CodeRange code_range(CodeType type, const NormalConvention& convention);
+
+/// A map of normals: the codes as they were imported, never changed, and tiles of edited normals
+/// above them. A texel that no edit reached is exported with its imported code, bit for bit.
+///
+/// Normals are given in the map's own space with y up. Texel (x, y) counts from the top left.
+class NormalMap {
+ public:
+  static constexpr int tile_size = 64;
+
+  NormalMap() = default;
+  /// Codes with 2 to 4 channels (3 to 4 unless two_channel). Throws InvalidInput otherwise.
+  NormalMap(RawImage codes, const NormalConvention& convention);
+  NormalMap(const NormalMap& other);
+  NormalMap& operator=(const NormalMap& other);
+  NormalMap(NormalMap&&) noexcept = default;
+  NormalMap& operator=(NormalMap&&) noexcept = default;
+  ~NormalMap() = default;
+
+  int width() const { return codes_.width(); }
+  int height() const { return codes_.height(); }
+  bool empty() const { return codes_.empty(); }
+  const NormalConvention& convention() const { return convention_; }
+  const RawImage& codes() const { return codes_; }
+
+  /// Edited normal where there is one, else the decoded code; unit. Zero where the code holds no
+  /// direction (not finite, or shorter than 0.25).
+  Vec3f normal(int x, int y) const;
+  /// Like normal(), but as the code's vector with its own length: what a renderer interpolates.
+  Vec3f vector(int x, int y) const;
+  /// Bilinear, not normalised, wrapping around; (0, 0) is the corner of the first texel and
+  /// (1, 1) that of the last.
+  Vec3f sample(const Vec2f& uv) const;
+
+  bool edited(int x, int y) const;
+  /// Any texel edited at all?
+  bool has_edits() const;
+  /// Texels that set_normal() has reached.
+  std::size_t edited_count() const;
+  /// Different tiles may be written by different threads at once. n is unit.
+  void set_normal(int x, int y, const Vec3f& n);
+
+  /// Codes of the edited map. With the map's own type and convention every unedited texel keeps its
+  /// code, and channels beyond the normal's (alpha) keep theirs always.
+  RawImage encode(CodeType type, const NormalConvention& convention) const;
+  RawImage encode() const { return encode(codes_.type(), convention_); }
+
+ private:
+  struct Tile {
+    std::array<Vec3f, tile_size * tile_size> normals;
+    std::bitset<tile_size * tile_size> edited;
+  };
+  Vec3f decode(int x, int y) const;
+  const Tile* tile(int x, int y) const;
+  static std::size_t index_in_tile(int x, int y) {
+    return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
+  }
+
+  RawImage codes_;
+  NormalConvention convention_;
+  CodeRange range_{1.0F, 0.0F};
+  int tile_columns_ = 0;
+  std::vector<std::unique_ptr<Tile>> tiles_;
+};
+
+/// The map at another size: slopes (tangent space) or vectors (other spaces) resampled bicubically
+/// when growing and by area when shrinking, coded in `type` with the map's own convention.
+NormalMap resize(const NormalMap& map, int width, int height, CodeType type);
+
+/// A map without details: every tangent-space code stands for (0, 0, 1). 3 channels, or 4 with
+/// opaque alpha.
+NormalMap flat_normal_map(int width, int height, CodeType type);
+
+}  // namespace normalshop

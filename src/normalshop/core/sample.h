@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include "normalshop/core/image.h"
+
+/// Reading images between pixel centres. Pixel (i, j) has its centre at (i, j) here.
+namespace normalshop {
+
+template <class T>
+T zero() {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return T{0};
+  } else {
+    return T::Zero();
+  }
+}
+
+/// Bilinear; outside the image the border pixel continues.
+template <class T>
+T sample_bilinear(const ImageView<T>& image, float x, float y) {
+  const float cx = std::clamp(x, 0.0F, static_cast<float>(image.width() - 1));
+  const float cy = std::clamp(y, 0.0F, static_cast<float>(image.height() - 1));
+  const int x0 = static_cast<int>(cx);
+  const int y0 = static_cast<int>(cy);
+  const int x1 = std::min(x0 + 1, image.width() - 1);
+  const int y1 = std::min(y0 + 1, image.height() - 1);
+  const float fx = cx - static_cast<float>(x0);
+  const float fy = cy - static_cast<float>(y0);
+  const T top = image(x0, y0) * (1.0F - fx) + image(x1, y0) * fx;
+  const T bottom = image(x0, y1) * (1.0F - fx) + image(x1, y1) * fx;
+  return top * (1.0F - fy) + bottom * fy;
+}
+
+/// Weights of the four pixels around fraction t in [0, 1) for the Catmull-Rom cubic (Keys 1981).
+inline std::array<float, 4> cubic_weights(float t) {
+  const float t2 = t * t;
+  const float t3 = t2 * t;
+  return {-0.5F * t3 + t2 - 0.5F * t, 1.5F * t3 - 2.5F * t2 + 1.0F,
+          -1.5F * t3 + 2.0F * t2 + 0.5F * t, 0.5F * t3 - 0.5F * t2};
+}
+
+/// Catmull-Rom bicubic; outside the image the border pixel continues. Exact for quadratics inside.
+template <class T>
+T sample_bicubic(const ImageView<T>& image, float x, float y) {
+  const float cx = std::clamp(x, 0.0F, static_cast<float>(image.width() - 1));
+  const float cy = std::clamp(y, 0.0F, static_cast<float>(image.height() - 1));
+  const int x0 = static_cast<int>(cx);
+  const int y0 = static_cast<int>(cy);
+  const std::array<float, 4> wx = cubic_weights(cx - static_cast<float>(x0));
+  const std::array<float, 4> wy = cubic_weights(cy - static_cast<float>(y0));
+  T sum = zero<T>();
+  for (int j = 0; j < 4; ++j) {
+    const T* row = image.row(std::clamp(y0 + j - 1, 0, image.height() - 1));
+    T line = zero<T>();
+    for (int i = 0; i < 4; ++i) {
+      const int xi = std::clamp(x0 + i - 1, 0, image.width() - 1);
+      line += row[xi] * wx[static_cast<std::size_t>(i)];
+    }
+    sum += line * wy[static_cast<std::size_t>(j)];
+  }
+  return sum;
+}
+
+/// 0 at or below `low`, 1 at or above `high`, smooth between. low < high.
+inline float smoothstep(float low, float high, float x) {
+  const float t = std::clamp((x - low) / (high - low), 0.0F, 1.0F);
+  return t * t * (3.0F - 2.0F * t);
+}
+
+}  // namespace normalshop

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "normalshop/core/vec.h"
+
+namespace normalshop {
+
+/// A triangle mesh with a texture atlas, as floor 3 and above see it: in object units (a file's
+/// world units, after its node transforms), with attributes per triangle corner, so that seams,
+/// hard edges and unwelded files need no special case.
+///
+/// Corner k of triangle t has the index 3 t + k. Every per-corner array has 3 * triangles.size()
+/// entries, or is empty where it says so.
+struct Mesh {
+  std::vector<Vec3f> positions;
+  std::vector<Vec3u> triangles;  ///< indices into positions, counter-clockwise from outside
+
+  std::vector<Vec3f> normals;  ///< per corner, unit: the base normals N^b at the corners
+  /// Per corner. u runs right, v DOWN: (0, 0) is the top left corner of the map's first texel, as
+  /// in glTF. Values outside 0..1 repeat.
+  std::vector<Vec2f> uvs;
+  /// Per corner: unit tangent and the sign w of the bitangent B = w * cross(N, T), where B points
+  /// up in the map (towards smaller v) for w = +1 on unmirrored triangles. May be empty: see
+  /// tangents.h.
+  std::vector<Vec4f> tangents;
+
+  std::vector<std::uint32_t> texture_sets;  ///< per triangle, index into texture_set_names
+  std::vector<std::string> texture_set_names;
+
+  std::size_t triangle_count() const { return triangles.size(); }
+  std::size_t corner_count() const { return 3 * triangles.size(); }
+  const Vec3f& position(std::size_t corner) const {
+    return positions[triangles[corner / 3][static_cast<Eigen::Index>(corner % 3)]];
+  }
+};
+
+/// Smallest box around all positions that a triangle uses; low > high for a mesh without triangles.
+struct Bounds {
+  Vec3f low = Vec3f::Constant(3.4e38F);
+  Vec3f high = Vec3f::Constant(-3.4e38F);
+  Vec3f center() const { return 0.5F * (low + high); }
+  float diagonal() const { return (high - low).norm(); }
+};
+Bounds bounds(const Mesh& mesh);
+
+}  // namespace normalshop

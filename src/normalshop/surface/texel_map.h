@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "normalshop/core/image.h"
+#include "normalshop/surface/frames.h"
+#include "normalshop/surface/mesh.h"
+
+namespace normalshop {
+
+inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
+
+/// Affine map from a texel to barycentric weights of one triangle's corners 1 and 2:
+/// b = origin_weights + (x - x0) * db_dx + (y - y0) * db_dy, (x, y) the texel's integer
+/// coordinates. (x0, y0) lies near corner 0, so that differences stay exact in float.
+struct TexelAffine {
+  float x0 = 0.0F;
+  float y0 = 0.0F;
+  Vec2f origin_weights{0.0F, 0.0F};
+  Vec2f db_dx{0.0F, 0.0F};
+  Vec2f db_dy{0.0F, 0.0F};
+  /// The triangle spans a border of the repeating unit square: texels of its other side need a
+  /// shift by whole maps, see TexelMap::barycentric().
+  bool wraps = false;
+  /// No area in the atlas: it owns no texel and b is meaningless.
+  bool degenerate = false;
+
+  Vec2f at(float x, float y) const { return origin_weights + (x - x0) * db_dx + (y - y0) * db_dy; }
+};
+
+/// A texel that a further triangle covers too (overlapping or mirrored charts).
+struct SharedTexel {
+  std::uint32_t texel;  ///< y * width + x
+  std::uint32_t triangle;
+};
+
+/// A texel beside a chart, which bilinear filtering and mip levels read.
+struct GutterTexel {
+  std::uint32_t texel;  ///< y * width + x
+  std::uint32_t
+      owner;       ///< triangle of the chart beside it; its frame, extrapolated, decodes the texel
+  float owner_b1;  ///< extrapolated weights of the owner's corners 1 and 2 at the texel
+  float owner_b2;
+  SurfacePoint
+      source;  ///< the surface point that the texel stands for: across the seam, at the same
+               ///< distance from it on the surface; on the border itself where nothing lies across
+};
+
+/// Which triangle each texel of one texture set's map shows: a texel belongs to a triangle that
+/// holds its centre. Of several, the first in file order owns it and the others share it. Texels
+/// outside every triangle within `gutter` texels of a chart's border are the gutter.
+class TexelMap {
+ public:
+  TexelMap() = default;
+  /// Throws InvalidInput when the mesh has no UVs or the size is not 1 to 65,536 a side.
+  TexelMap(const Mesh& mesh, std::uint32_t texture_set, int width, int height, int gutter = 8);
+
+  int width() const { return owner_.width(); }
+  int height() const { return owner_.height(); }
+  std::uint32_t texture_set() const { return texture_set_; }
+  /// Triangle or no_triangle, per texel.
+  const Image<std::uint32_t>& owner() const { return owner_; }
+  /// By texel, then triangle.
+  const std::vector<SharedTexel>& shared() const { return shared_; }
+  /// By texel.
+  const std::vector<GutterTexel>& gutter() const { return gutter_; }
+
+  /// One per triangle of the mesh; degenerate for triangles of other texture sets.
+  const std::vector<TexelAffine>& affines() const { return affines_; }
+  /// Weights at a texel's centre in a triangle that covers it, whole-map shifts considered.
+  SurfacePoint surface_point(std::uint32_t triangle, int x, int y) const;
+
+ private:
+  std::uint32_t texture_set_ = 0;
+  Image<std::uint32_t> owner_;
+  std::vector<TexelAffine> affines_;
+  std::vector<SharedTexel> shared_;
+  std::vector<GutterTexel> gutter_;
+};
+
+}  // namespace normalshop
