@@ -26,3 +26,12 @@ if(NORMALSHOP_SANITIZE)
                                                        -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(normalshop_compiler INTERFACE -fsanitize=address,undefined)
 endif()
+
+if(NORMALSHOP_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "The fuzzers need clang: cmake --preset sanitize")
+  endif()
+  # Coverage in every target, so that the fuzzers see into the floors.
+  target_compile_options(normalshop_compiler INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(normalshop_compiler INTERFACE -fsanitize=fuzzer-no-link)
+endif()

@@ -18,6 +18,25 @@ function(normalshop_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main normalshop::compiler)
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+endfunction()
+
+# normalshop_benchmark(NAME SOURCES ... LIBRARIES ...): the Google Benchmark program bench_NAME.
+function(normalshop_benchmark name)
+  cmake_parse_arguments(BENCH "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(bench_${name} ${BENCH_SOURCES})
+  target_compile_definitions(bench_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(bench_${name} PRIVATE ${BENCH_LIBRARIES} benchmark::benchmark_main
+                                              normalshop::compiler)
+endfunction()
+
+# normalshop_fuzzer(NAME SOURCES ... LIBRARIES ...): the libFuzzer program fuzz_NAME. Its seeds, if
+# any, lie in fuzz/corpus/NAME; `dev check` runs it.
+function(normalshop_fuzzer name)
+  cmake_parse_arguments(FUZZ "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(fuzz_${name} ${FUZZ_SOURCES})
+  target_link_libraries(fuzz_${name} PRIVATE ${FUZZ_LIBRARIES} normalshop::compiler)
+  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
 endfunction()
