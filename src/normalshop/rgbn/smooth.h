@@ -1,0 +1,36 @@
+#pragma once
+
+#include <tuple>
+
+#include "normalshop/core/image.h"
+#include "normalshop/core/options.h"
+
+namespace normalshop {
+
+struct SmoothOptions {
+  float sigma = 4.0F;
+
+  static constexpr auto fields() {
+    return std::tuple{field("sigma", &SmoothOptions::sigma, "length", 0.0, 1e6,
+                            "Standard deviation of the Gaussian; 0 leaves the input as it is")};
+  }
+};
+
+/// Gaussian in slope space: target = source * g in `region` (thesis 2.2: the smoothed slopes are
+/// those of the smoothed height). Normalised by `validity` (0 to 1, empty: all valid): pixels with
+/// 0 don't count, and where nothing valid is in reach the source is kept. Beyond the image its
+/// border pixels continue; constant slopes stay exactly as they are. Kernel error below 6e-4 of its
+/// peak.
+///
+/// All images have one size; target may be source. sigma in pixels, 0.3 to 500 sensible. Returns
+/// the pixels that it wrote: region within target. Throws InvalidInput for a sigma that is negative
+/// or not finite. Sources: FIR below sigma 8, Deriche's recursive filter (order 4) above.
+Rect smooth(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
+            const SmoothOptions& options = {});
+/// The same for one number per pixel: masks, heights.
+Rect smooth(MaskView source, MaskView validity, MaskSpan target, Rect region,
+            const SmoothOptions& options = {});
+/// Pixels read beyond the region.
+int reach(const SmoothOptions& options);
+
+}  // namespace normalshop
