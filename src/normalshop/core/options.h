@@ -55,8 +55,10 @@ template <class Options>
 Options scale_lengths(Options options, float factor) {
   for_each_field<Options>([&](const auto& f) {
     using T = std::remove_cvref_t<decltype(options.*f.member)>;
-    if constexpr (!std::is_integral_v<T> && requires { options.*f.member *= factor; }) {
-      if (f.unit == "length") options.*f.member *= factor;
+    if constexpr (!std::is_integral_v<T>) {
+      if constexpr (requires { options.*f.member *= factor; }) {
+        if (f.unit == "length") options.*f.member *= factor;
+      }
     }
   });
   return options;
