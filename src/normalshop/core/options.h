@@ -6,6 +6,8 @@
 #include <tuple>
 #include <type_traits>
 
+#include "normalshop/core/vec.h"
+
 /// Option reflection. An options struct describes its fields once:
 ///
 ///     struct SmoothOptions {
@@ -55,10 +57,8 @@ template <class Options>
 Options scale_lengths(Options options, float factor) {
   for_each_field<Options>([&](const auto& f) {
     using T = std::remove_cvref_t<decltype(options.*f.member)>;
-    if constexpr (!std::is_integral_v<T>) {
-      if constexpr (requires { options.*f.member *= factor; }) {
-        if (f.unit == "length") options.*f.member *= factor;
-      }
+    if constexpr (std::is_same_v<T, float> || std::is_same_v<T, Vec2f>) {
+      if (f.unit == "length") options.*f.member *= factor;
     }
   });
   return options;
