@@ -105,9 +105,7 @@ class Image {
     width_ = width;
     height_ = height;
   }
-  void fill(const T& value) {
-    std::fill_n(data(), size(), value);
-  }
+  void fill(const T& value) { std::fill_n(data(), size(), value); }
 
   int width() const { return width_; }
   int height() const { return height_; }

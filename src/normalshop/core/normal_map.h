@@ -63,6 +63,9 @@ class NormalMap {
   Vec3f normal(int x, int y) const;
   /// Like normal(), but as the code's vector with its own length: what a renderer interpolates.
   Vec3f vector(int x, int y) const;
+  /// normal() and vector() of a whole row, width() of them: faster than one by one.
+  void read_normals(int y, Vec3f* normals) const;
+  void read_vectors(int y, Vec3f* vectors) const;
   /// Bilinear, not normalised, wrapping around; (0, 0) is the corner of the first texel and
   /// (1, 1) that of the last.
   Vec3f sample(const Vec2f& uv) const;
@@ -76,7 +79,7 @@ class NormalMap {
   void set_normal(int x, int y, const Vec3f& n);
 
   /// Codes of the edited map. With the map's own type and convention every unedited texel keeps its
-  /// code, and channels beyond the normal's (alpha) keep theirs always.
+  /// code, and channels beyond the normal's (alpha) keep theirs always. The space is not converted.
   RawImage encode(CodeType type, const NormalConvention& convention) const;
   RawImage encode() const { return encode(codes_.type(), convention_); }
 
@@ -85,7 +88,7 @@ class NormalMap {
     std::array<Vec3f, tile_size * tile_size> normals;
     std::bitset<tile_size * tile_size> edited;
   };
-  Vec3f decode(int x, int y) const;
+  void encode_edits(int y, RawImage& out) const;
   const Tile* tile(int x, int y) const;
   static std::size_t index_in_tile(int x, int y) {
     return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
@@ -99,11 +102,11 @@ class NormalMap {
 };
 
 /// The map at another size: slopes (tangent space) or vectors (other spaces) resampled bicubically
-/// when growing and by area when shrinking, coded in `type` with the map's own convention.
+/// when growing and by area when shrinking, coded in `type` with the map's own convention. Further
+/// channels take the nearest texel. Throws InvalidInput unless both sizes are at least 1.
 NormalMap resize(const NormalMap& map, int width, int height, CodeType type);
 
-/// A map without details: every tangent-space code stands for (0, 0, 1). 3 channels, or 4 with
-/// opaque alpha.
+/// A map without details, of 3 channels: every tangent-space code stands for (0, 0, 1) exactly.
 NormalMap flat_normal_map(int width, int height, CodeType type);
 
 }  // namespace normalshop

@@ -56,9 +56,10 @@ constexpr void for_each_field(Visitor&& visit) {
 template <class Options>
 Options scale_lengths(Options options, float factor) {
   for_each_field<Options>([&](const auto& f) {
-    using T = std::remove_cvref_t<decltype(options.*f.member)>;
+    auto& value = options.*f.member;
+    using T = std::remove_reference_t<decltype(value)>;
     if constexpr (std::is_same_v<T, float> || std::is_same_v<T, Vec2f>) {
-      if (f.unit == "length") options.*f.member *= factor;
+      if (f.unit == "length") value *= factor;
     }
   });
   return options;

@@ -38,6 +38,9 @@ class RawImage {
   const std::uint8_t* data() const { return bytes_.data(); }
   std::uint8_t* data() { return bytes_.data(); }
 
+  const std::uint8_t* row_data(int y) const { return bytes_.row(y); }
+  std::uint8_t* row_data(int y) { return bytes_.row(y); }
+
   /// First code of a row, as its own type. T must match type().
   template <class T>
   const T* row(int y) const {

@@ -35,6 +35,32 @@ T sample_bilinear(const ImageView<T>& image, float x, float y) {
   return top * (1.0F - fy) + bottom * fy;
 }
 
+/// The four texels around a point of a repeating texture and the weights of the second ones. uv (0,
+/// 0) is the corner of the first texel and (1, 1) that of the last.
+struct WrappedTaps {
+  int x0;
+  int y0;
+  int x1;
+  int y1;
+  float fx;
+  float fy;
+
+  WrappedTaps(const Vec2f& uv, int width, int height) {
+    const float x = (uv.x() - std::floor(uv.x())) * static_cast<float>(width) - 0.5F;
+    const float y = (uv.y() - std::floor(uv.y())) * static_cast<float>(height) - 0.5F;
+    const float left = std::floor(x);
+    const float top = std::floor(y);
+    fx = x - left;
+    fy = y - top;
+    x0 = static_cast<int>(left);
+    y0 = static_cast<int>(top);
+    x1 = x0 + 1 >= width ? 0 : x0 + 1;
+    y1 = y0 + 1 >= height ? 0 : y0 + 1;
+    if (x0 < 0) x0 = width - 1;
+    if (y0 < 0) y0 = height - 1;
+  }
+};
+
 /// Weights of the four pixels around fraction t in [0, 1) for the Catmull-Rom cubic (Keys 1981).
 inline std::array<float, 4> cubic_weights(float t) {
   const float t2 = t * t;

@@ -1,0 +1,51 @@
+#include "normalshop/core/color_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "normalshop/core/sample.h"
+
+namespace normalshop {
+
+float srgb_to_linear(float encoded) {
+  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+
+float linear_to_srgb(float linear) {
+  if (!(linear > 0.0F)) return 0.0F;
+  return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+}
+
+ColorMap::ColorMap(RawImage codes, const Vec3f& factor)
+    : codes_(std::move(codes)), factor_(factor) {
+  if (codes_.type() == CodeType::F32) return;
+  const int count = codes_.type() == CodeType::U8 ? 256 : 4096;
+  for (int i = 0; i < count; ++i) {
+    to_linear_.push_back(srgb_to_linear(static_cast<float>(i) / static_cast<float>(count - 1)));
+  }
+}
+
+Vec3f ColorMap::texel(int x, int y) const {
+  const int step = codes_.channels() >= 3 ? 1 : 0;
+  const int i = x * codes_.channels();
+  if (codes_.type() == CodeType::U8) {
+    const std::uint8_t* p = codes_.row<std::uint8_t>(y) + i;
+    return {to_linear_[p[0]], to_linear_[p[step]], to_linear_[p[2 * step]]};
+  }
+  if (codes_.type() == CodeType::U16) {
+    const std::uint16_t* p = codes_.row<std::uint16_t>(y) + i;
+    return {to_linear_[p[0] >> 4U], to_linear_[p[step] >> 4U], to_linear_[p[2 * step] >> 4U]};
+  }
+  const float* p = codes_.row<float>(y) + i;
+  return {p[0], p[step], p[2 * step]};
+}
+
+Vec3f ColorMap::sample(const Vec2f& uv) const {
+  if (empty()) return factor_;
+  const WrappedTaps tap(uv, codes_.width(), codes_.height());
+  const Vec3f upper = texel(tap.x0, tap.y0) * (1.0F - tap.fx) + texel(tap.x1, tap.y0) * tap.fx;
+  const Vec3f lower = texel(tap.x0, tap.y1) * (1.0F - tap.fx) + texel(tap.x1, tap.y1) * tap.fx;
+  return (upper * (1.0F - tap.fy) + lower * tap.fy).cwiseProduct(factor_);
+}
+
+}  // namespace normalshop

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "normalshop/core/raw_image.h"
+
+namespace normalshop {
+
+/// An sRGB colour map (or a constant colour, without pixels), read as linear RGB.
+class ColorMap {
+ public:
+  ColorMap() = default;
+  /// Integer codes count as sRGB, float codes as linear. 1 or 2 channels: grey.
+  explicit ColorMap(RawImage codes, const Vec3f& factor = Vec3f::Ones());
+  explicit ColorMap(const Vec3f& constant) : factor_(constant) {}
+
+  bool empty() const { return codes_.empty(); }
+  const RawImage& codes() const { return codes_; }
+  /// Linear RGB times the factor; bilinear and wrapping like NormalMap::sample().
+  Vec3f sample(const Vec2f& uv) const;
+
+ private:
+  Vec3f texel(int x, int y) const;
+
+  RawImage codes_;
+  Vec3f factor_ = Vec3f::Ones();
+  std::vector<float> to_linear_;  ///< by 8-bit code, or by the upper 12 bits of a 16-bit one
+};
+
+float srgb_to_linear(float encoded);
+float linear_to_srgb(float linear);
+
+}  // namespace normalshop
