@@ -49,7 +49,8 @@ Curve::Curve(std::vector<Vec2f> points) : points_(std::move(points)) {
 }
 
 Curve::Piece Curve::piece(float x) const {
-  if (points_.size() < 2 || x <= points_.front().x()) return {0, 1.0F, 0.0F, true};
+  // Not x <= front: what is not a number counts as before the first point.
+  if (points_.size() < 2 || !(x > points_.front().x())) return {0, 1.0F, 0.0F, true};
   if (x >= points_.back().x()) return {points_.size() - 1, 1.0F, 0.0F, true};
   const auto after = std::upper_bound(points_.begin(), points_.end(), x,
                                       [](float value, const Vec2f& p) { return value < p.x(); });

@@ -30,6 +30,9 @@ Code to_code(float value) {
   }
 }
 
+/// All gains and zeros of codes are halves; exact ones make 0 the same code everywhere.
+float nearest_half(float value) { return std::round(2.0F * value) / 2.0F; }
+
 Vec3f complete(float x, float y, float z, const NormalConvention& convention) {
   const float up = convention.green_down ? -y : y;
   if (!convention.two_channel) return {x, up, z};
@@ -86,8 +89,8 @@ void decode_row(const RawImage& image, const NormalConvention& convention, int y
 void encode_texels(const Vec3f* vectors, int count, const NormalConvention& convention,
                    RawImage& image, int x0, int y) {
   const CodeRange range = code_range(image.type(), convention);
-  const float gain = 1.0F / range.scale;
-  const float zero = -range.offset / range.scale;
+  const float gain = nearest_half(1.0F / range.scale);
+  const float zero = nearest_half(-range.offset * gain);
   const float up = convention.green_down ? -gain : gain;
   const bool bounded = image.type() != CodeType::F32;
   const int channels = image.channels();

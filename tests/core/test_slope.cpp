@@ -1,0 +1,90 @@
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "normalshop/core/random.h"
+#include "normalshop/core/slope.h"
+
+namespace normalshop {
+namespace {
+
+Vec3f random_direction(Random& random) {
+  const float z = random.uniform(-1.0F, 1.0F);
+  const float turn = random.uniform(0.0F, 6.2831853F);
+  const float r = std::sqrt(1.0F - z * z);
+  return Vec3f(r * std::cos(turn), r * std::sin(turn), z).normalized();
+}
+
+TEST(Slope, OfAPlane) {
+  // z = 0.5 x - 2 y has the normal (-0.5, 2, 1) / |.|.
+  const Vec3f n = Vec3f(-0.5F, 2.0F, 1.0F).normalized();
+  EXPECT_LT((slope_from_normal(n) - Vec2f(0.5F, -2.0F)).norm(), 1e-6F);
+  EXPECT_LT((slope_from_normal(3.0F * n) - Vec2f(0.5F, -2.0F)).norm(), 1e-6F);
+  EXPECT_LT(angle_degrees(normal_from_slope({0.5F, -2.0F}), n), 1e-5);
+}
+
+TEST(Slope, AndNormalAreInverse) {
+  Random random(1);
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3f n = random_direction(random);
+    if (n.z() < 0.03F) continue;
+    EXPECT_LT(angle_degrees(normal_from_slope(slope_from_normal(n)), n), 1e-5);
+  }
+}
+
+TEST(Slope, SaturatesAtTheHorizonAndKeepsTheAzimuth) {
+  for (const Vec3f& n : {Vec3f(0.6F, 0.8F, 0.0F), Vec3f(0.6F, 0.8F, -1e-3F)}) {
+    const Vec2f slope = slope_from_normal(n);
+    EXPECT_NEAR(slope.norm(), max_slope, 1e-2F);
+    EXPECT_LT((slope.normalized() + Vec2f(0.6F, 0.8F)).norm(), 1e-5F);
+  }
+}
+
+TEST(Slope, OfNoDirectionIsZero) {
+  EXPECT_EQ(slope_from_normal(Vec3f::Zero()), Vec2f(0.0F, 0.0F));
+  EXPECT_EQ(surface_gradient(Vec3f::Zero(), Vec3f::UnitZ()), Vec3f(0.0F, 0.0F, 0.0F));
+}
+
+TEST(SurfaceGradient, RoundTripsAtAnyBaseTilt) {
+  Random random(2);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3f n = random_direction(random);
+    const Vec3f d = random_direction(random);
+    if (n.dot(d) < 1.01F * min_cosine) continue;
+    const Vec3f gradient = surface_gradient(n, d);
+    EXPECT_LT(std::abs(gradient.dot(d)), 1e-5F * (1.0F + gradient.norm()));
+    ASSERT_LT(angle_degrees(normal_from_surface_gradient(gradient, d), n), 1e-5)
+        << "cosine " << n.dot(d);
+  }
+}
+
+TEST(SurfaceGradient, AlongTheViewIsTheSlope) {
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3f n = random_direction(random);
+    if (n.z() < 0.1F) continue;
+    const Vec3f gradient = surface_gradient(n, Vec3f::UnitZ());
+    EXPECT_LT((gradient.head<2>() - slope_from_normal(n)).norm(), 1e-5F);
+    EXPECT_EQ(gradient.z(), 0.0F);
+  }
+}
+
+TEST(SurfaceGradient, OfAHeightOverASlopingPlane) {
+  // Base z = a x with normal d; details of height h above it along d, of gradient g in its plane.
+  const Vec3f d = Vec3f(-1.0F, 0.0F, 1.0F).normalized();
+  const Vec3f along = Vec3f(1.0F, 0.0F, 1.0F).normalized();
+  const Vec3f gradient = 0.7F * along - 0.2F * Vec3f::UnitY();
+  // Tangents of the displaced surface: along + 0.7 d and y - 0.2 d.
+  const Vec3f n = (along + 0.7F * d).cross(Vec3f::UnitY() - 0.2F * d).normalized();
+  EXPECT_LT((surface_gradient(n, d) - gradient).norm(), 1e-6F);
+}
+
+TEST(AngleDegrees, IsExactForSmallAngles) {
+  EXPECT_NEAR(angle_degrees({0.0F, 0.0F, 1.0F}, {1e-6F, 0.0F, 1.0F}), 1e-6 * 57.29577951, 1e-11);
+  EXPECT_NEAR(angle_degrees({0.0F, 0.0F, 1.0F}, {0.0F, 2.0F, 0.0F}), 90.0, 1e-12);
+  EXPECT_NEAR(angle_degrees({0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, -1.0F}), 180.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace normalshop
