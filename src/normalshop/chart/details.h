@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "normalshop/core/slope.h"
+
+namespace normalshop {
+
+/// Which direction an edit displaces along.
+enum class EditMode {
+  View,  ///< along the viewing direction: the two numbers are slopes z_x, z_y
+  Base   ///< along the base normal N^b: the two numbers are h_u, h_v over chart x, y
+};
+constexpr auto names_of(EditMode) { return std::array<std::string_view, 2>{"view", "base"}; }
+
+/// The conversion between a normal and the two numbers that operators see, at one surface point
+/// whose unit base normal in chart axes is `base` (base.z > 0). All normals are in chart axes.
+///
+/// View: slopes of n. Base: h_u = -<b_u, n> / <base, n> with b_u = (1, 0, -base.x / base.z),
+/// likewise v (algorithms.md 12.3's correction of thesis 4.3): both are the surface gradient of n
+/// with respect to one direction, and both return what went in. Saturates at the horizon of that
+/// direction.
+inline Vec2f gradient_from_normal(const Vec3f& n, const Vec3f& base, EditMode mode) {
+  if (mode == EditMode::View) return slope_from_normal(n);
+  const Vec3f sg = surface_gradient(n, base);
+  const float inverse = 1.0F / std::max(base.z(), min_cosine);
+  return {sg.x() - base.x() * inverse * sg.z(), sg.y() - base.y() * inverse * sg.z()};
+}
+
+/// Base: the tangential vector with <sg, b_u> = h_u and <sg, b_v> = h_v subtracted from the base
+/// normal, which is f_u x f_v for f_u = b_u + h_u N (the dropped term h N_u is bounded by 12.2).
+inline Vec3f normal_from_gradient(const Vec2f& gradient, const Vec3f& base, EditMode mode) {
+  if (mode == EditMode::View) return normal_from_slope(gradient);
+  const float along = gradient.x() * base.x() + gradient.y() * base.y();
+  const Vec3f sg(gradient.x() - along * base.x(), gradient.y() - along * base.y(),
+                 -along * base.z());
+  return (base - sg).normalized();
+}
+
+/// The numbers of the base surface alone: its slopes, or (0, 0).
+inline Vec2f base_gradient(const Vec3f& base, EditMode mode) {
+  return mode == EditMode::View ? slope_from_normal(base) : Vec2f(0.0F, 0.0F);
+}
+
+}  // namespace normalshop

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "normalshop/chart/rasterizer.h"
+#include "normalshop/chart/storage.h"
+#include "normalshop/core/image.h"
+
+namespace normalshop {
+
+/// An editing chart: what an orthographic view shows of the storage atlas, an RGBN image with ids.
+/// Normals are unit and in chart axes. Pixels that see no surface hold zero vectors.
+struct EditingChart {
+  ChartGrid grid;
+  IdBuffer ids;
+  Image<Vec3f> base_normal;  ///< N^b; points away from the viewer on back faces
+  Image<Vec3f> normal;       ///< N^f, the stored details in the base normal's frame
+  ColorImage albedo;         ///< linear RGB; empty unless asked for
+  MaskImage weight;          ///< effective chart: see effective.h; empty until asked for
+};
+
+struct PullOptions {
+  bool albedo = false;
+};
+
+/// Looks up normals (and albedo) for every pixel of chart.ids: transfer by triangles
+/// (thesis 5.3.1), bilinear in the atlas. Needs chart.grid and chart.ids.
+void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart& chart,
+                     const PullOptions& options = {});
+
+/// Rasterises the grid and pulls.
+EditingChart pull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
+                  const PullOptions& options = {});
+
+}  // namespace normalshop

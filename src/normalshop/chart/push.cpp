@@ -1,0 +1,308 @@
+#include "normalshop/chart/push.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include "normalshop/chart/chart_triangle.h"
+#include "normalshop/chart/edit_sampler.h"
+#include "normalshop/core/parallel.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr int tile_size = NormalMap::tile_size;
+
+/// Solves m x = v for a frame m = (vT, vB, vN) by its cofactors: MikkTSpace's exact inverse.
+Vec3f to_map(const Mat3f& m, const Vec3f& v) {
+  const Vec3f t = m.col(0);
+  const Vec3f b = m.col(1);
+  const Vec3f n = m.col(2);
+  const Vec3f r0 = b.cross(n);
+  const Vec3f x(v.dot(r0), v.dot(n.cross(t)), v.dot(t.cross(b)));
+  return (t.dot(r0) < 0.0F ? Vec3f(-x) : x).normalized();
+}
+
+/// Sums that do not depend on the order of tasks.
+struct Tally {
+  std::size_t visited = 0;
+  std::size_t changed = 0;
+  float largest = 0.0F;  // squared distance between unit normals
+
+  void add(const Tally& other) {
+    visited += other.visited;
+    changed += other.changed;
+    largest = std::max(largest, other.largest);
+  }
+};
+
+/// A texel outside the plain owner pass and its new normal.
+struct Write {
+  std::uint32_t texel;
+  Vec3f normal;
+};
+
+/// The push into one texture set.
+class SetPush {
+ public:
+  SetPush(const Mesh& mesh, const EditSampler& sampler, StorageSet& set, std::uint32_t index);
+  Tally run();
+
+ private:
+  using Triangle = ChartTriangle;
+
+  void find_candidates();
+  void mark_tiles(std::uint32_t triangle);
+  Tally push_tile(int tile);
+  std::vector<Write> gutter_writes() const;
+  std::vector<Write> shared_writes() const;
+  const Triangle* candidate(std::uint32_t triangle) const {
+    const std::uint32_t i = triangle_index_[triangle];
+    return i == no_triangle ? nullptr : &triangles_[i];
+  }
+  Effect effect_at(const Triangle& triangle, const Vec3f& weights, Vec3f& base) const;
+  Vec3f edited(int x, int y, const Triangle& frame, const Vec3f& weights, const Effect& effect,
+               const Vec3f& base, Tally& tally) const;
+  Tally write(const std::vector<Write>& writes);
+
+  const Mesh& mesh_;
+  const EditSampler& sampler_;
+  StorageSet& set_;
+  std::uint32_t index_;
+  NormalSpace space_;
+  int tile_columns_;
+  std::vector<Triangle> triangles_;            // candidates
+  std::vector<std::uint32_t> triangle_index_;  // per triangle of the mesh: into triangles_
+  std::vector<std::uint8_t> tile_used_;
+};
+
+SetPush::SetPush(const Mesh& mesh, const EditSampler& sampler, StorageSet& set, std::uint32_t index)
+    : mesh_(mesh),
+      sampler_(sampler),
+      set_(set),
+      index_(index),
+      space_(set.normals.convention().space),
+      tile_columns_((set.normals.width() + tile_size - 1) / tile_size),
+      triangle_index_(mesh.triangle_count(), no_triangle),
+      tile_used_(static_cast<std::size_t>(tile_columns_ *
+                                          ((set.normals.height() + tile_size - 1) / tile_size))) {}
+
+/// Triangles that may hold points that the edit changes.
+void SetPush::find_candidates() {
+  Triangle t;
+  for (std::size_t i = 0; i < mesh_.triangle_count(); ++i) {
+    if (mesh_.texture_sets[i] != index_) continue;
+    const ChartGrid& grid = sampler_.grid();
+    const Vec3f a = grid.project(mesh_.position(3 * i));
+    const Vec3f b = grid.project(mesh_.position(3 * i + 1));
+    const Vec3f c = grid.project(mesh_.position(3 * i + 2));
+    const Vec3f low = a.cwiseMin(b).cwiseMin(c);
+    const Vec3f high = a.cwiseMax(b).cwiseMax(c);
+    if (!sampler_.reaches(low.x(), low.y(), high.x(), high.y())) continue;
+    const auto id = static_cast<std::uint32_t>(i);
+    t.load(mesh_, grid, id);
+    const Vec3f facing = t.normals.row(2).transpose();
+    if (facing[0] <= 0.0F && facing[0] + facing[1] <= 0.0F && facing[0] + facing[2] <= 0.0F) {
+      continue;
+    }
+    triangle_index_[i] = static_cast<std::uint32_t>(triangles_.size());
+    triangles_.push_back(t);
+    mark_tiles(id);
+  }
+}
+
+void SetPush::mark_tiles(std::uint32_t triangle) {
+  const Vec2f size(static_cast<float>(set_.normals.width()),
+                   static_cast<float>(set_.normals.height()));
+  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
+  const Vec2f a = mesh_.uvs[corner].cwiseProduct(size);
+  const Vec2f b = mesh_.uvs[corner + 1].cwiseProduct(size);
+  const Vec2f c = mesh_.uvs[corner + 2].cwiseProduct(size);
+  const Vec2f low = a.cwiseMin(b).cwiseMin(c);
+  const Vec2f high = a.cwiseMax(b).cwiseMax(c);
+  const auto wrap = [](int v, int n) { return ((v % n) + n) % n; };
+  // Whole maps further on come the same texels again.
+  const int x0 = static_cast<int>(std::floor(low.x()));
+  const int y0 = static_cast<int>(std::floor(low.y()));
+  const int x1 = std::min(static_cast<int>(high.x()), x0 + set_.normals.width());
+  const int y1 = std::min(static_cast<int>(high.y()), y0 + set_.normals.height());
+  const auto next = [](int v, int n, int w) {  // first texel of the next tile, or of the next map
+    return v + std::min(tile_size - w % tile_size, n - w);
+  };
+  for (int y = y0; y <= y1;) {
+    const int wy = wrap(y, set_.normals.height());
+    for (int x = x0; x <= x1;) {
+      const int wx = wrap(x, set_.normals.width());
+      tile_used_[static_cast<std::size_t>(wy / tile_size * tile_columns_ + wx / tile_size)] = 1;
+      x = next(x, set_.normals.width(), wx);
+    }
+    y = next(y, set_.normals.height(), wy);
+  }
+}
+
+Effect SetPush::effect_at(const Triangle& triangle, const Vec3f& weights, Vec3f& base) const {
+  const Vec3f point = triangle.points * weights;
+  if (!sampler_.active(point.x(), point.y())) return {};
+  base = (triangle.normals * weights).normalized();
+  return sampler_.at(point, base);
+}
+
+/// New map-space normal of a texel whose code refers to `frame` at `weights`.
+Vec3f SetPush::edited(int x, int y, const Triangle& frame, const Vec3f& weights,
+                      const Effect& effect, const Vec3f& base, Tally& tally) const {
+  const Mat3f m = frame.frame(weights, frame.normals * weights, space_, sampler_.grid().view);
+  Vec3f before = m * set_.normals.normal(x, y);
+  before = before.isZero() ? base : Vec3f(before.normalized());
+  const Vec3f after = effect.apply(before, base, sampler_.mode());
+  ++tally.changed;
+  tally.largest = std::max(tally.largest, (after - before).squaredNorm());
+  return to_map(m, after);
+}
+
+Tally SetPush::push_tile(int tile) {
+  Tally tally;
+  const int x0 = tile % tile_columns_ * tile_size;
+  const int y0 = tile / tile_columns_ * tile_size;
+  const Rect rect = intersect({x0, y0, x0 + tile_size, y0 + tile_size}, set_.texels.owner().rect());
+  const std::vector<TexelAffine>& affines = set_.texels.affines();
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const std::uint32_t* owners = set_.texels.owner().row(y);
+    for (int x = rect.x0; x < rect.x1; ++x) {
+      const std::uint32_t owner = owners[x];
+      if (owner == no_triangle) continue;
+      const Triangle* triangle = candidate(owner);
+      if (triangle == nullptr) continue;
+      ++tally.visited;
+      const TexelAffine& affine = affines[owner];
+      Vec2f b = affine.at(static_cast<float>(x), static_cast<float>(y));
+      if (affine.wraps) {
+        const SurfacePoint p = set_.texels.surface_point(owner, x, y);
+        b = {p.b1, p.b2};
+      }
+      const Vec3f weights(1.0F, b.x(), b.y());
+      Vec3f base;
+      const Effect effect = effect_at(*triangle, weights, base);
+      if (!effect.any()) continue;
+      set_.normals.set_normal(x, y, edited(x, y, *triangle, weights, effect, base, tally));
+    }
+  }
+  return tally;
+}
+
+template <class Item, class Body>
+std::vector<Write> collect(const std::vector<Item>& items, const Body& body) {
+  constexpr std::size_t run = 4096;
+  std::vector<std::vector<Write>> parts((items.size() + run - 1) / run);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part) {
+      for (std::size_t i = part * run; i < std::min(items.size(), (part + 1) * run); ++i) {
+        body(items[i], parts[part]);
+      }
+    }
+  });
+  std::vector<Write> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+/// A gutter texel takes the change of the surface point across the seam that it stands for, but its
+/// own details, decoded by the frame of the chart beside it.
+std::vector<Write> SetPush::gutter_writes() const {
+  return collect(set_.texels.gutter(), [&](const GutterTexel& g, std::vector<Write>& out) {
+    const Triangle* source = candidate(g.source.triangle);
+    Triangle other;
+    if (source == nullptr) {
+      // The surface may run on in another texture set.
+      if (mesh_.texture_sets[g.source.triangle] == index_) return;
+      other.load(mesh_, sampler_.grid(), g.source.triangle);
+      source = &other;
+    }
+    Vec3f base;
+    const Effect effect = effect_at(*source, {1.0F, g.source.b1, g.source.b2}, base);
+    if (!effect.any()) return;
+    Triangle frame;
+    frame.load(mesh_, sampler_.grid(), g.owner);
+    const int x = static_cast<int>(g.texel) % set_.normals.width();
+    const int y = static_cast<int>(g.texel) / set_.normals.width();
+    Tally ignored;
+    out.push_back(
+        {g.texel, edited(x, y, frame, {1.0F, g.owner_b1, g.owner_b2}, effect, base, ignored)});
+  });
+}
+
+/// Texels that further triangles cover: where the owner's edit does nothing, the first of them that
+/// the edit reaches decides.
+std::vector<Write> SetPush::shared_writes() const {
+  return collect(set_.texels.shared(), [&](const SharedTexel& s, std::vector<Write>& out) {
+    const Triangle* triangle = candidate(s.triangle);
+    if (triangle == nullptr) return;
+    const int x = static_cast<int>(s.texel) % set_.normals.width();
+    const int y = static_cast<int>(s.texel) / set_.normals.width();
+    const SurfacePoint point = set_.texels.surface_point(s.triangle, x, y);
+    Vec3f base;
+    const Vec3f weights(1.0F, point.b1, point.b2);
+    const Effect effect = effect_at(*triangle, weights, base);
+    if (!effect.any()) return;
+    const std::uint32_t owner = set_.texels.owner()(x, y);
+    if (const Triangle* first = candidate(owner)) {
+      const SurfacePoint p = set_.texels.surface_point(owner, x, y);
+      Vec3f owner_base;
+      if (effect_at(*first, {1.0F, p.b1, p.b2}, owner_base).any()) return;
+    }
+    Tally ignored;
+    out.push_back({s.texel, edited(x, y, *triangle, weights, effect, base, ignored)});
+  });
+}
+
+Tally SetPush::write(const std::vector<Write>& writes) {
+  Tally tally;
+  for (std::size_t i = 0; i < writes.size(); ++i) {
+    if (i > 0 && writes[i].texel == writes[i - 1].texel) continue;
+    const int x = static_cast<int>(writes[i].texel) % set_.normals.width();
+    const int y = static_cast<int>(writes[i].texel) / set_.normals.width();
+    set_.normals.set_normal(x, y, writes[i].normal);
+    ++tally.changed;
+  }
+  return tally;
+}
+
+Tally SetPush::run() {
+  find_candidates();
+  // Before any texel changes: these read their own normals only, but the owners' effects too.
+  const std::vector<Write> shared = shared_writes();
+  const std::vector<Write> gutter = gutter_writes();
+  std::vector<int> tiles;
+  for (std::size_t i = 0; i < tile_used_.size(); ++i) {
+    if (tile_used_[i] != 0) tiles.push_back(static_cast<int>(i));
+  }
+  Tally tally;
+  std::mutex mutex;
+  parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+    Tally local;
+    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i]));
+    const std::lock_guard lock(mutex);
+    tally.add(local);
+  });
+  tally.add(write(shared));
+  tally.add(write(gutter));
+  return tally;
+}
+
+}  // namespace
+
+PushResult push(const Mesh& mesh, const EditingChart& chart, const ChartEdit& edit,
+                StorageAtlas& storage) {
+  const EditSampler sampler(chart, edit);
+  Tally tally;
+  for (std::size_t i = 0; i < storage.sets.size(); ++i) {
+    SetPush set(mesh, sampler, storage.sets[i], static_cast<std::uint32_t>(i));
+    tally.add(set.run());
+  }
+  const float half_chord = 0.5F * std::sqrt(tally.largest);
+  return {tally.visited, tally.changed,
+          2.0F * std::asin(std::min(1.0F, half_chord)) * 180.0F / 3.14159265F};
+}
+
+}  // namespace normalshop

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "normalshop/chart/details.h"
+#include "normalshop/chart/pull.h"
+
+namespace normalshop {
+
+/// What an operator did to an editing chart, as push carries it to the texels:
+///
+///     texel' = texel + weight * (coverage * (base - texel) + change)
+///
+/// in the two numbers of `mode`. An edit that adds has no coverage; one that ignores or replaces
+/// the details under it covers them.
+struct ChartEdit {
+  EditMode mode = EditMode::View;
+  SlopeView change;   ///< size of the chart
+  MaskView coverage;  ///< 0 to 1; empty: 0 everywhere
+  Rect region;        ///< pixels outside change nothing
+};
+
+struct PushResult {
+  std::size_t visited = 0;      ///< texels of triangles that may lie in the region
+  std::size_t changed = 0;      ///< texels and gutter texels with a new normal
+  float largest_change = 0.0F;  ///< degrees
+};
+
+/// Carries an edit back by gathering: every texel of the storage atlas that the chart sees within
+/// the region projects its base point into the chart, is dropped where something nearer hides it,
+/// and reads change, coverage and chart.weight there (bicubic, bilinear). A texel for which nothing
+/// changes is not written, so it keeps its code. Gutter texels take what happens at the surface
+/// point that they stand for. Texels shared by several triangles take the first one's edit that
+/// reaches them. Deterministic for any number of threads.
+///
+/// Sources: thesis 5.3.3; algorithms.md 10.3 (gather, delta) and 10.4 (gutter).
+PushResult push(const Mesh& mesh, const EditingChart& chart, const ChartEdit& edit,
+                StorageAtlas& storage);
+
+}  // namespace normalshop
