@@ -9,7 +9,6 @@
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
-#include "normalshop/core/sample.h"
 
 namespace normalshop {
 
