@@ -107,7 +107,12 @@ Mesh cube(int n) {
                        static_cast<float>(f / 3) / 2.0F + 0.04F);
     const Vec2f size(1.0F / 3.0F - 0.08F, 0.5F - 0.08F);
     grid(builder, n, n, [&](float s, float t) {
-      const Vec3f position = normal + (2.0F * s - 1.0F) * right + (2.0F * t - 1.0F) * up;
+      // Exactly antisymmetric, so that neighbouring faces' positions are equal as numbers.
+      const auto signed_place = [n](float a) {
+        const auto count = static_cast<float>(n);
+        return (2.0F * std::round(a * count) - count) / count;
+      };
+      const Vec3f position = normal + signed_place(s) * right + signed_place(t) * up;
       const Vec2f uv = corner + Vec2f(s, 1.0F - t).cwiseProduct(size);
       return MeshBuilder::Corner{position, normal, uv};
     });

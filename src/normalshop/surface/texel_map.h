@@ -9,6 +9,8 @@
 
 namespace normalshop {
 
+struct Topology;
+
 inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
 /// Affine map from a texel to barycentric weights of one triangle's corners 1 and 2:
@@ -21,7 +23,7 @@ struct TexelAffine {
   Vec2f db_dx{0.0F, 0.0F};
   Vec2f db_dy{0.0F, 0.0F};
   /// The triangle spans a border of the repeating unit square: texels of its other side need a
-  /// shift by whole maps, see TexelMap::barycentric().
+  /// shift by whole maps, see TexelMap::surface_point().
   bool wraps = false;
   /// No area in the atlas: it owns no texel and b is meaningless.
   bool degenerate = false;
@@ -40,8 +42,8 @@ struct GutterTexel {
   std::uint32_t texel;  ///< y * width + x
   std::uint32_t
       owner;       ///< triangle of the chart beside it; its frame, extrapolated, decodes the texel
-  float owner_b1;  ///< extrapolated weights of the owner's corners 1 and 2 at the texel
-  float owner_b2;
+  float owner_b1;  ///< extrapolated weights of the owner's corners 1 and 2 at the texel; further
+  float owner_b2;  ///< out than the triangle is large they stop (no weight falls below -1)
   SurfacePoint
       source;  ///< the surface point that the texel stands for: across the seam, at the same
                ///< distance from it on the surface; on the border itself where nothing lies across
@@ -49,12 +51,20 @@ struct GutterTexel {
 
 /// Which triangle each texel of one texture set's map shows: a texel belongs to a triangle that
 /// holds its centre. Of several, the first in file order owns it and the others share it. Texels
-/// outside every triangle within `gutter` texels of a chart's border are the gutter.
+/// outside every triangle within `gutter` texels of a chart's border (seam, open edge, or an edge
+/// at which the chart is folded back) are the gutter; the nearest border's triangle owns them.
+///
+/// A centre on an edge belongs to the triangle right of or below it, so that neighbours of one
+/// chart never share a texel. UVs outside 0..1 repeat. The result does not depend on threads.
 class TexelMap {
  public:
   TexelMap() = default;
-  /// Throws InvalidInput when the mesh has no UVs or the size is not 1 to 65,536 a side.
+  /// Throws InvalidInput when the mesh has no UVs, the size is not 1 to 65,536 a side, or the
+  /// gutter is not 0 to 256 texels. mesh.texture_sets must be filled.
   TexelMap(const Mesh& mesh, std::uint32_t texture_set, int width, int height, int gutter = 8);
+  /// With the mesh's topology at hand, which only the gutter needs.
+  TexelMap(const Mesh& mesh, const Topology& topology, std::uint32_t texture_set, int width,
+           int height, int gutter = 8);
 
   int width() const { return owner_.width(); }
   int height() const { return owner_.height(); }
@@ -72,6 +82,8 @@ class TexelMap {
   SurfacePoint surface_point(std::uint32_t triangle, int x, int y) const;
 
  private:
+  void find_owners(const Mesh& mesh);
+
   std::uint32_t texture_set_ = 0;
   Image<std::uint32_t> owner_;
   std::vector<TexelAffine> affines_;
