@@ -1,0 +1,195 @@
+#include "normalshop/rgbn/pen.h"
+
+#include <cmath>
+
+#include "normalshop/core/error.h"
+#include "normalshop/rgbn/polyline_field.h"
+
+namespace normalshop {
+
+namespace {
+
+/// Narrower strokes are averaged over several positions in a pixel.
+constexpr float narrow = 4.0F;
+constexpr int narrow_grid = 3;
+/// A curve between two stroke points is cut into at most this many pieces.
+constexpr int most_pieces = 1000;
+
+void check(std::span<const Stroke> strokes, const PenOptions& o) {
+  if (!std::isfinite(o.width) || !std::isfinite(o.height) || !std::isfinite(o.taper) ||
+      o.width < 0.0F || o.taper < 0.0F) {
+    throw InvalidInput("pen: width, height and taper must be numbers, width and taper at least 0");
+  }
+  for (const Stroke& stroke : strokes) {
+    if (o.closed && !stroke.empty() && stroke.size() < 3) {
+      throw InvalidInput("pen: a closed stroke needs at least 3 points");
+    }
+    for (const StrokePoint& p : stroke) {
+      if (!p.position.allFinite() || !std::isfinite(p.pressure)) {
+        throw InvalidInput("pen: a stroke's points must be numbers");
+      }
+    }
+  }
+}
+
+int pieces(float length, float spacing) {
+  return std::clamp(static_cast<int>(std::ceil(std::min(length / spacing, 1e6F))), 1, most_pieces);
+}
+
+/// Barry and Goldman's pyramid for knots t0..t3 between p1 and p2.
+Vec2f catmull_rom(const std::array<Vec2f, 4>& p, const std::array<float, 4>& t, float x) {
+  const auto mix = [x](const Vec2f& a, const Vec2f& b, float ta, float tb) -> Vec2f {
+    return tb > ta ? Vec2f(((tb - x) * a + (x - ta) * b) / (tb - ta)) : a;
+  };
+  const Vec2f a1 = mix(p[0], p[1], t[0], t[1]);
+  const Vec2f a2 = mix(p[1], p[2], t[1], t[2]);
+  const Vec2f a3 = mix(p[2], p[3], t[2], t[3]);
+  const Vec2f b1 = mix(a1, a2, t[0], t[2]);
+  const Vec2f b2 = mix(a2, a3, t[1], t[3]);
+  return mix(b1, b2, t[1], t[2]);
+}
+
+Stroke without_repeats(const Stroke& stroke, StrokeEnds ends) {
+  Stroke out;
+  for (const StrokePoint& p : stroke) {
+    if (out.empty() || (p.position - out.back().position).norm() > 1e-3F) out.push_back(p);
+  }
+  while (ends == StrokeEnds::Closed && out.size() > 1 &&
+         (out.front().position - out.back().position).norm() <= 1e-3F) {
+    out.pop_back();
+  }
+  return out;
+}
+
+/// 0 at the ends of an open stroke, 1 from `taper` on, parabola between.
+float taper_at(float along, float length, float taper) {
+  const float reach = std::min(taper, 0.5F * length);
+  if (!(reach > 0.0F)) return 1.0F;
+  const float t = std::clamp(std::min(along, length - along) / reach, 0.0F, 1.0F);
+  return t * (2.0F - t);
+}
+
+struct Fades {
+  bool width;
+  bool height;
+};
+
+/// Points with arc length; long segments are cut where the taper bends.
+std::vector<FieldVertex> vertices(const Stroke& stroke, const PenOptions& o, const Fades& fades) {
+  float length = 0.0F;
+  for (std::size_t i = 1; i < stroke.size(); ++i) {
+    length += (stroke[i].position - stroke[i - 1].position).norm();
+  }
+  const float taper = o.closed ? 0.0F : std::min(o.taper, 0.5F * length);
+  std::vector<FieldVertex> out;
+  float along = 0.0F;
+  const auto push = [&](const Vec2f& position, float pressure, float v) {
+    const float p = std::clamp(pressure, 0.0F, 1.0F);
+    const float t = taper_at(v, length, taper);
+    out.push_back({position, 0.5F * o.width * t * (fades.width ? p : 1.0F),
+                   t * t * (fades.height ? p : 1.0F)});
+  };
+  push(stroke.front().position, stroke.front().pressure, 0.0F);
+  for (std::size_t i = 1; i < stroke.size(); ++i) {
+    const StrokePoint& a = stroke[i - 1];
+    const StrokePoint& b = stroke[i];
+    const float step = (b.position - a.position).norm();
+    const bool bends = taper > 0.0F && (along < taper || along + step > length - taper);
+    const int count = bends ? pieces(step, std::max(1.0F, taper / 32.0F)) : 1;
+    for (int k = 1; k <= count; ++k) {
+      const float t = static_cast<float>(k) / static_cast<float>(count);
+      push(a.position + t * (b.position - a.position), a.pressure + t * (b.pressure - a.pressure),
+           along + t * step);
+    }
+    along += step;
+  }
+  return out;
+}
+
+PolylineField make_field(std::span<const Stroke> strokes, const PenOptions& o) {
+  check(strokes, o);
+  const Profile profile({.shape = o.profile, .closed = o.closed, .curve = o.curve});
+  const bool both = o.pressure == PressureTo::Both;
+  // Were the height of a level to vary along the stroke, the inside would not fit together.
+  const Fades fades = {both || o.pressure == PressureTo::Width,
+                       (both || o.pressure == PressureTo::Height) && profile.level() == 0.0F};
+  std::vector<FieldShape> shapes;
+  for (const Stroke& stroke : strokes) {
+    if (stroke.empty() || o.width == 0.0F || o.height == 0.0F) continue;
+    const StrokeEnds ends = o.closed ? StrokeEnds::Closed : StrokeEnds::Open;
+    const float spacing = std::clamp(o.width / 8.0F, 1.0F, 3.0F);
+    const Stroke line = o.smooth ? smooth_stroke(stroke, spacing, ends) : stroke;
+    FieldShape shape;
+    shape.closed = o.closed;
+    shape.contours.push_back(vertices(line, o, fades));
+    shapes.push_back(std::move(shape));
+  }
+  return {shapes, profile, o.height, FieldCoverage::Band};
+}
+
+int grid(const PenOptions& o) { return o.width < narrow ? narrow_grid : 1; }
+
+}  // namespace
+
+Rect pen(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Stroke> strokes,
+         const PenOptions& options) {
+  const PolylineField field = make_field(strokes, options);
+  region = intersect(region, details.rect());
+  field.render(region, grid(options), [&](int x, int y, const std::vector<FieldSample>& row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      details.row(y)[x + static_cast<int>(i)] = row[i].slope;
+      if (!coverage.empty()) coverage.row(y)[x + static_cast<int>(i)] = row[i].coverage;
+    }
+  });
+  return intersect(region, field.bounds());
+}
+
+Rect pen_height(MaskSpan height, Rect region, std::span<const Stroke> strokes,
+                const PenOptions& options) {
+  const PolylineField field = make_field(strokes, options);
+  region = intersect(region, height.rect());
+  field.render(region, grid(options), [&](int x, int y, const std::vector<FieldSample>& row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      height.row(y)[x + static_cast<int>(i)] = row[i].height;
+    }
+  });
+  return intersect(region, field.bounds());
+}
+
+int reach(const PenOptions& options) {
+  return static_cast<int>(std::ceil(std::min(0.5F * options.width, 1e6F))) + 1;
+}
+
+Stroke smooth_stroke(const Stroke& stroke, float spacing, StrokeEnds ends) {
+  if (!(spacing > 0.0F)) throw InvalidInput("smooth_stroke: spacing must be greater than 0");
+  const Stroke p = without_repeats(stroke, ends);
+  const bool closed = ends == StrokeEnds::Closed && p.size() > 2;
+  if (p.size() < 2) return p;
+  const auto count = static_cast<std::ptrdiff_t>(p.size());
+  const auto at = [&](std::ptrdiff_t i) -> Vec2f {
+    if (closed) return p[static_cast<std::size_t>((i + count) % count)].position;
+    if (i < 0) return 2.0F * p[0].position - p[1].position;
+    if (i >= count) return 2.0F * p.back().position - p[p.size() - 2].position;
+    return p[static_cast<std::size_t>(i)].position;
+  };
+  Stroke out;
+  for (std::ptrdiff_t i = 0; i + (closed ? 0 : 1) < count; ++i) {
+    const std::array<Vec2f, 4> q = {at(i - 1), at(i), at(i + 1), at(i + 2)};
+    std::array<float, 4> knots = {0.0F, 0.0F, 0.0F, 0.0F};
+    for (std::size_t k = 1; k < 4; ++k) {
+      knots[k] = knots[k - 1] + std::sqrt((q[k] - q[k - 1]).norm());
+    }
+    const float from = p[static_cast<std::size_t>(i)].pressure;
+    const float to = p[static_cast<std::size_t>((i + 1) % count)].pressure;
+    const int steps = pieces(1.2F * (q[2] - q[1]).norm(), spacing);
+    for (int k = 0; k < steps; ++k) {
+      const float t = static_cast<float>(k) / static_cast<float>(steps);
+      out.push_back({k == 0 ? q[1] : catmull_rom(q, knots, knots[1] + t * (knots[2] - knots[1])),
+                     from + t * (to - from)});
+    }
+  }
+  if (!closed) out.push_back(p.back());
+  return out;
+}
+
+}  // namespace normalshop

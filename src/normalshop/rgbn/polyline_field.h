@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "normalshop/core/image.h"
+#include "normalshop/rgbn/profile.h"
+
+/// Height fields around polylines: what pen and emboss have in common. Private to this floor.
+/// Positions are in pixels, y down.
+namespace normalshop {
+
+/// Between vertices half width and fade change linearly.
+struct FieldVertex {
+  Vec2f position;
+  float half_width;
+  float fade;  ///< multiplies the height, 0 to 1; 1 where the profile changes the level
+};
+
+/// An open polyline, or closed contours that share one inside (winding number not 0).
+struct FieldShape {
+  std::vector<std::vector<FieldVertex>> contours;
+  bool closed = false;
+};
+
+struct FieldSample {
+  float height = 0.0F;
+  Vec2f slope = Vec2f::Zero();  ///< y up
+  float coverage = 0.0F;
+};
+
+enum class FieldCoverage { Band, Inside };
+
+class PolylineField {
+ public:
+  PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile, float height,
+                FieldCoverage coverage);
+  ~PolylineField();
+  PolylineField(const PolylineField&) = delete;
+  PolylineField& operator=(const PolylineField&) = delete;
+
+  /// Pixels outside of which slopes and coverage are 0 (and the height too).
+  const Rect& bounds() const { return bounds_; }
+
+  /// Samples of the pixels (x, y), (x + 1, y) ... of a part of one row.
+  using Write = std::function<void(int x, int y, const std::vector<FieldSample>&)>;
+  /// Hands over every pixel of `region` once, in parallel. `grid` x `grid` positions a pixel are
+  /// averaged.
+  void render(const Rect& region, int grid, const Write& write) const;
+
+ private:
+  struct Segment;
+  struct Shape;
+  struct Nearest;
+  struct Bins;
+  using List = std::vector<std::uint32_t>;
+
+  void add(const FieldShape& shape);
+  void add_contour(const std::vector<FieldVertex>& contour, bool closed);
+  void grow_bounds(const Segment& segment, float half_width);
+  Bins bin(const Rect& region) const;
+  void render_tile(const Rect& tile, const List& segments, int grid, const Write& write) const;
+  void prune(const List& segments, const Vec2f& center, float radius, List& kept) const;
+  Nearest nearest(const Vec2f& p, const List& segments, std::size_t& at) const;
+  FieldSample sample(const Vec2f& p, const List& segments) const;
+  FieldSample beside(const Vec2f& p, const Shape& shape, const Nearest& nearest) const;
+  FieldSample cap(const Nearest& nearest) const;
+  FieldSample level(const Vec2f& p, const Shape& shape) const;
+  float coverage(float u, float fade) const;
+  bool inside(const Vec2f& p, const Shape& shape) const;
+
+  Profile profile_;
+  float height_;
+  FieldCoverage coverage_;
+  std::vector<Segment> segments_;
+  std::vector<Shape> shapes_;
+  Rect bounds_;
+};
+
+}  // namespace normalshop
