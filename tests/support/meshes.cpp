@@ -102,7 +102,9 @@ Mesh cube(int n) {
   }};
   MeshBuilder builder;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto& [normal, right, up] = faces[f];
+    const Vec3f& normal = faces[f][0];
+    const Vec3f& right = faces[f][1];
+    const Vec3f& up = faces[f][2];
     const Vec2f corner(static_cast<float>(f % 3) / 3.0F + 0.04F,
                        static_cast<float>(f / 3) / 2.0F + 0.04F);
     const Vec2f size(1.0F / 3.0F - 0.08F, 0.5F - 0.08F);
