@@ -1,0 +1,236 @@
+// Operators of floor 2, single calls on 1 MP unless the name says otherwise. Peer of the Gaussian:
+// OpenImageIO's ImageBufAlgo::convolve with a separable kernel of the same radius, and a plain
+// separable loop.
+#include <cmath>
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <benchmark/benchmark.h>
+
+#include "normalshop/core/random.h"
+#include "normalshop/rgbn/combine.h"
+#include "normalshop/rgbn/emboss.h"
+#include "normalshop/rgbn/heatmap.h"
+#include "normalshop/rgbn/pen.h"
+#include "normalshop/rgbn/shade.h"
+#include "normalshop/rgbn/sharpen.h"
+#include "normalshop/rgbn/smooth.h"
+#include "normalshop/rgbn/stamp.h"
+
+namespace normalshop {
+namespace {
+
+constexpr int side = 1024;
+
+SlopeImage noise_image(int width, int height) {
+  SlopeImage image(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1U);
+      image(x, y) = {static_cast<float>(bits & 0xffffU) * 0x1p-16F,
+                     static_cast<float>(bits >> 16U) * 0x1p-16F};
+    }
+  }
+  return image;
+}
+
+void count_pixels(benchmark::State& state, double pixels) {
+  state.counters["MP/s"] =
+      benchmark::Counter(pixels * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void smooth_slopes(benchmark::State& state) {
+  const SlopeImage image = noise_image(side, side);
+  SlopeImage out(side, side);
+  const SmoothOptions options{.sigma = static_cast<float>(state.range(0))};
+  for (auto _ : state) smooth(image, {}, out, image.rect(), options);
+  count_pixels(state, side * side);
+}
+BENCHMARK(smooth_slopes)
+    ->Arg(1)
+    ->Arg(3)
+    ->Arg(5)
+    ->Arg(8)
+    ->Arg(9)
+    ->Arg(12)
+    ->Arg(30)
+    ->Arg(100)
+    ->Arg(500)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void smooth_masked(benchmark::State& state) {
+  const SlopeImage image = noise_image(side, side);
+  const MaskImage valid(side, side, 0.5F);
+  SlopeImage out(side, side);
+  const SmoothOptions options{.sigma = static_cast<float>(state.range(0))};
+  for (auto _ : state) smooth(image, valid, out, image.rect(), options);
+  count_pixels(state, side * side);
+}
+BENCHMARK(smooth_masked)->Arg(5)->Arg(30)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void smooth_peer_plain_loop(benchmark::State& state) {
+  const SlopeImage image = noise_image(side, side);
+  SlopeImage between(side, side);
+  SlopeImage out(side, side);
+  const int radius = 4 * static_cast<int>(state.range(0));
+  std::vector<float> weights;
+  for (int k = -radius; k <= radius; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(state.range(0));
+    weights.push_back(static_cast<float>(std::exp(-0.5 * t * t)));
+  }
+  const auto pass = [&](const SlopeImage& from, SlopeImage& to, int dx, int dy) {
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        Vec2f sum = Vec2f::Zero();
+        for (int k = -radius; k <= radius; ++k) {
+          sum += weights[static_cast<std::size_t>(k + radius)] *
+                 from(std::clamp(x + k * dx, 0, side - 1), std::clamp(y + k * dy, 0, side - 1));
+        }
+        to(x, y) = sum;
+      }
+    }
+  };
+  for (auto _ : state) {
+    pass(image, between, 1, 0);
+    pass(between, out, 0, 1);
+  }
+  count_pixels(state, side * side);
+}
+BENCHMARK(smooth_peer_plain_loop)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void smooth_peer_openimageio(benchmark::State& state) {
+  SlopeImage image = noise_image(side, side);
+  const OIIO::ImageSpec spec(side, side, 2, OIIO::TypeDesc::FLOAT);
+  OIIO::ImageBuf source(spec, image.data());
+  OIIO::ImageBuf between(spec);
+  OIIO::ImageBuf out(spec);
+  const auto length = static_cast<float>(8 * state.range(0) + 1);
+  const OIIO::ImageBuf across = OIIO::ImageBufAlgo::make_kernel("gaussian", length, 1.0F);
+  const OIIO::ImageBuf down = OIIO::ImageBufAlgo::make_kernel("gaussian", 1.0F, length);
+  for (auto _ : state) {
+    OIIO::ImageBufAlgo::convolve(between, source, across);
+    OIIO::ImageBufAlgo::convolve(out, between, down);
+  }
+  count_pixels(state, side * side);
+}
+BENCHMARK(smooth_peer_openimageio)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void sharpen_slopes(benchmark::State& state) {
+  const SlopeImage image = noise_image(side, side);
+  SlopeImage out(side, side);
+  const SharpenOptions options{.sigma = 5.0F, .noise_sigma = 1.0F};
+  for (auto _ : state) sharpen(image, {}, out, image.rect(), options);
+  count_pixels(state, side * side);
+}
+BENCHMARK(sharpen_slopes)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void combine_slopes(benchmark::State& state) {
+  SlopeImage image = noise_image(side, side);
+  const MaskImage mask(side, side, 0.5F);
+  SlopeImage out(side, side);
+  for (auto _ : state) combine_linear(image, image, mask, 0.5F, out, image.rect());
+  count_pixels(state, side * side);
+}
+BENCHMARK(combine_slopes)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// A wave of 1000 points through 4000 x 4000 pixels.
+void pen_wave_4000(benchmark::State& state) {
+  Stroke stroke;
+  for (int i = 0; i < 1000; ++i) {
+    const float t = static_cast<float>(i) * 0.001F;
+    stroke.push_back({{100.0F + 3800.0F * t, 2000.0F + 1500.0F * std::sin(12.0F * t)}});
+  }
+  PenOptions options;
+  options.width = static_cast<float>(state.range(0));
+  SlopeImage details(4000, 4000);
+  MaskImage coverage(4000, 4000);
+  for (auto _ : state) {
+    pen(details, coverage, details.rect(), std::span<const Stroke>(&stroke, 1), options);
+  }
+}
+BENCHMARK(pen_wave_4000)->Arg(3)->Arg(16)->Arg(200)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void pen_closed_step_2000(benchmark::State& state) {
+  Stroke stroke;
+  for (int i = 0; i < 400; ++i) {
+    const float t = static_cast<float>(i) * 6.2831853F / 400.0F;
+    stroke.push_back({{1000.0F + 800.0F * std::cos(t), 1000.0F + 700.0F * std::sin(t)}});
+  }
+  PenOptions options;
+  options.profile = ProfileShape::Step;
+  options.closed = true;
+  options.width = 40.0F;
+  SlopeImage details(2000, 2000);
+  MaskImage coverage(2000, 2000);
+  for (auto _ : state) {
+    pen(details, coverage, details.rect(), std::span<const Stroke>(&stroke, 1), options);
+  }
+}
+BENCHMARK(pen_closed_step_2000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void stamp_patch(benchmark::State& state) {
+  Patch patch;
+  patch.slopes = noise_image(512, 512);
+  StampOptions options;
+  options.size = static_cast<float>(state.range(0));
+  options.rotation = 30.0F;
+  SlopeImage details(side, side);
+  MaskImage coverage(side, side);
+  for (auto _ : state) stamp(details, coverage, details.rect(), patch, {512.0F, 512.0F}, options);
+}
+BENCHMARK(stamp_patch)->Arg(64)->Arg(512)->Arg(1000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// 20 rings of two contours with 40 points each.
+void emboss_20_letters_3000x2000(benchmark::State& state) {
+  Outline outline;
+  for (int letter = 0; letter < 20; ++letter) {
+    for (const float radius : {0.35F, -0.2F}) {
+      std::vector<Vec2f> contour;
+      for (int i = 0; i < 40; ++i) {
+        const float t = 6.2831853F * static_cast<float>(i) / 40.0F;
+        contour.push_back(
+            {static_cast<float>(letter) + std::abs(radius) * std::cos(t), radius * std::sin(t)});
+      }
+      outline.push_back(contour);
+    }
+  }
+  EmbossOptions options;
+  options.size = 140.0F;
+  SlopeImage details(3000, 2000);
+  MaskImage coverage(3000, 2000);
+  const Outline middle = centered(outline);
+  for (auto _ : state) {
+    emboss(details, coverage, details.rect(), middle, {1500.0F, 1000.0F}, options);
+  }
+}
+BENCHMARK(emboss_20_letters_3000x2000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void shade_normals(benchmark::State& state) {
+  const ColorImage normals(side, side, Vec3f(0.3F, 0.2F, 0.9F).normalized());
+  ColorImage out(side, side);
+  for (auto _ : state) shade(normals, normals, {}, {}, out);
+  count_pixels(state, side * side);
+}
+BENCHMARK(shade_normals)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void occlusion_of_heights(benchmark::State& state) {
+  const MaskImage height(side, side, 0.0F);
+  MaskImage out(side, side);
+  for (auto _ : state) ambient_occlusion(height, 40.0F, out);
+  count_pixels(state, side * side);
+}
+BENCHMARK(occlusion_of_heights)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void heatmap_of_values(benchmark::State& state) {
+  const MaskImage values(side, side, 0.4F);
+  ColorImage out(side, side);
+  for (auto _ : state) heatmap(values, 1.0F, out);
+  count_pixels(state, side * side);
+}
+BENCHMARK(heatmap_of_values)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace normalshop
+
+BENCHMARK_MAIN();

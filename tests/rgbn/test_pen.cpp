@@ -1,0 +1,261 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "normalshop/core/error.h"
+#include "normalshop/core/parallel.h"
+#include "normalshop/core/slope.h"
+#include "normalshop/rgbn/pen.h"
+
+namespace normalshop {
+namespace {
+
+struct Drawing {
+  Drawing(int width, int height, const std::vector<Stroke>& strokes, const PenOptions& options)
+      : slopes(width, height), coverage(width, height), heights(width, height) {
+    changed = pen(slopes, coverage, slopes.rect(), strokes, options);
+    pen_height(heights, slopes.rect(), strokes, options);
+  }
+  SlopeImage slopes;
+  MaskImage coverage;
+  MaskImage heights;
+  Rect changed;
+};
+
+PenOptions options_of(ProfileShape profile, float width, float height) {
+  PenOptions o;
+  o.profile = profile;
+  o.width = width;
+  o.height = height;
+  o.smooth = false;
+  return o;
+}
+
+Stroke circle(const Vec2f& center, float radius, int points, float direction) {
+  Stroke s;
+  for (int i = 0; i < points; ++i) {
+    const float a = direction * 6.2831853F * static_cast<float>(i) / static_cast<float>(points);
+    s.push_back({{center.x() + radius * std::cos(a), center.y() + radius * std::sin(a)}});
+  }
+  return s;
+}
+
+TEST(Pen, StraightLineHasTheSlopesOfItsProfile) {
+  for (const auto shape : {ProfileShape::Bump, ProfileShape::Crease, ProfileShape::Scratch}) {
+    const PenOptions o = options_of(shape, 21.0F, 3.0F);
+    const Vec2f direction = Vec2f(3.0F, 1.0F).normalized();
+    const Stroke line = {{{-100.0F, 20.0F}}, {Vec2f(-100.0F, 20.0F) + 400.0F * direction}};
+    const Drawing d(128, 128, {line}, o);
+    const Profile profile({shape, false, {}});
+    const Vec2f left(direction.y(), -direction.x());
+    double worst = 0.0;
+    for (int y = 0; y < 128; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        const Vec2f p(static_cast<float>(x), static_cast<float>(y));
+        const float u = (p - line[0].position).dot(left) / 10.5F;
+        if (std::abs(u) < 1e-3F) continue;
+        const Vec2f g = 3.0F / 10.5F * profile.at(u).slope * left;
+        worst = std::max(worst, angle_degrees(normal_from_slope(d.slopes(x, y)),
+                                              normal_from_slope({g.x(), -g.y()})));
+        EXPECT_NEAR(d.heights(x, y), 3.0F * profile.at(u).height, 1e-3F);
+      }
+    }
+    EXPECT_LT(worst, 0.01);
+  }
+}
+
+TEST(Pen, YIsUp) {
+  // A bump along the x axis: above it (smaller row) the surface falls upwards.
+  const Drawing d(40, 40, {{{{0.0F, 20.0F}}, {{40.0F, 20.0F}}}},
+                  options_of(ProfileShape::Bump, 16.0F, 2.0F));
+  EXPECT_LT(d.slopes(20, 16).y(), -0.1F);
+  EXPECT_GT(d.slopes(20, 24).y(), 0.1F);
+}
+
+/// Largest deviation of the slopes from differences of the height, as a part of the largest slope,
+/// leaving out a part of the pixels for medial axes.
+double gradient_error(const Drawing& d, double quantile) {
+  std::vector<double> errors;
+  double largest = 0.0;
+  for (int y = 1; y + 1 < d.slopes.height(); ++y) {
+    for (int x = 1; x + 1 < d.slopes.width(); ++x) {
+      const Vec2f g = d.slopes(x, y);
+      const Vec2f numeric(0.5F * (d.heights(x + 1, y) - d.heights(x - 1, y)),
+                          0.5F * (d.heights(x, y - 1) - d.heights(x, y + 1)));
+      largest = std::max(largest, static_cast<double>(g.norm()));
+      if (d.coverage(x, y) > 0.0F) errors.push_back(static_cast<double>((g - numeric).norm()));
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<std::size_t>(quantile * static_cast<double>(errors.size() - 1))] /
+         largest;
+}
+
+TEST(Pen, SlopesAreTheGradientOfOneHeight) {
+  PenOptions o = options_of(ProfileShape::Bump, 40.0F, 8.0F);
+  o.taper = 60.0F;
+  o.smooth = true;
+  const Stroke wave = {{{40.0F, 150.0F}, 0.6F},
+                       {{110.0F, 90.0F}, 1.0F},
+                       {{200.0F, 180.0F}, 0.5F},
+                       {{270.0F, 120.0F}, 0.9F}};
+  EXPECT_LT(gradient_error({320, 260, {wave}, o}, 0.99), 0.02);
+  o.profile = ProfileShape::Custom;
+  o.curve = Curve({{-1.0F, 0.0F}, {-0.3F, 1.0F}, {0.4F, -0.5F}, {1.0F, 0.0F}});
+  EXPECT_LT(gradient_error({320, 260, {wave}, o}, 0.99), 0.04);
+  o.taper = 0.0F;  // round ends of an uneven profile
+  EXPECT_LT(gradient_error({320, 260, {wave}, o}, 0.99), 0.04);
+}
+
+TEST(Pen, ClosedStrokeIsTheGradientOfOneHeight) {
+  PenOptions o = options_of(ProfileShape::Step, 24.0F, 5.0F);
+  o.closed = true;
+  EXPECT_LT(gradient_error({200, 200, {circle({100.3F, 99.6F}, 60.0F, 200, 1.0F)}, o}, 1.0), 0.02);
+}
+
+TEST(Pen, OpenStrokeDoesNotChangeTheLevel) {
+  PenOptions o = options_of(ProfileShape::Custom, 30.0F, 4.0F);
+  o.curve = Curve({{-1.0F, -0.5F}, {0.0F, 1.0F}, {1.0F, 0.8F}});
+  const Drawing d(100, 100, {{{{-20.0F, 50.3F}}, {{120.0F, 50.3F}}}}, o);
+  double up = 0.0;
+  for (int y = 0; y < 100; ++y) up += static_cast<double>(d.slopes(50, y).y());
+  EXPECT_NEAR(up, 0.0, 1e-3);
+}
+
+TEST(Pen, ClosedStepRaisesTheInsideWhateverTheDirection) {
+  for (const float direction : {1.0F, -1.0F}) {
+    PenOptions o = options_of(ProfileShape::Step, 20.0F, 7.0F);
+    o.closed = true;
+    const Drawing d(200, 200, {circle({100.0F, 100.0F}, 60.0F, 90, direction)}, o);
+    double rise = 0.0;
+    for (int x = 0; x < 100; ++x) rise += static_cast<double>(d.slopes(x, 100).x());
+    EXPECT_NEAR(rise, 7.0, 0.02);
+    EXPECT_EQ(d.slopes(100, 100), Vec2f(0.0F, 0.0F));
+    EXPECT_EQ(d.coverage(100, 100), 0.0F);
+    EXPECT_EQ(d.heights(100, 100), 7.0F);
+    EXPECT_EQ(d.heights(3, 3), 0.0F);
+  }
+}
+
+TEST(Pen, OverlappingRaisedRegionsJoin) {
+  PenOptions o = options_of(ProfileShape::Step, 12.0F, 3.0F);
+  o.closed = true;
+  const Drawing d(
+      200, 200,
+      {circle({80.0F, 100.0F}, 40.0F, 60, 1.0F), circle({120.0F, 100.0F}, 40.0F, 60, -1.0F)}, o);
+  EXPECT_EQ(d.slopes(80, 100), Vec2f(0.0F, 0.0F));  // on the other stroke's line
+  EXPECT_EQ(d.heights(80, 100), 3.0F);
+}
+
+TEST(Pen, CrossingStrokesJoinInsteadOfAddingUp) {
+  const PenOptions o = options_of(ProfileShape::Crease, 16.0F, 4.0F);
+  const Drawing d(100, 100,
+                  {{{{10.0F, 10.0F}}, {{90.0F, 90.0F}}}, {{{10.0F, 90.0F}}, {{90.0F, 10.0F}}}}, o);
+  EXPECT_NEAR(d.heights(50, 50), -4.0F, 1e-4F);
+  for (int i = 0; i < 100; ++i) {
+    for (int j = 0; j < 100; ++j) EXPECT_GE(d.heights(i, j), -4.0001F);
+  }
+}
+
+TEST(Pen, NothingBeyondTheStroke) {
+  const PenOptions o = options_of(ProfileShape::Bump, 10.0F, 4.0F);
+  const Stroke line = {{{300.0F, 300.0F}}, {{340.0F, 320.0F}}};
+  const Drawing d(640, 480, {line}, o);
+  EXPECT_LT(d.changed.width(), 60);
+  std::size_t touched = 0;
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      if (d.slopes(x, y).isZero(0.0F) && d.coverage(x, y) == 0.0F) continue;
+      ++touched;
+      EXPECT_TRUE(d.changed.contains(x, y));
+    }
+  }
+  EXPECT_GT(touched, 300U);
+  EXPECT_EQ(d.coverage(320, 310), 1.0F);
+}
+
+TEST(Pen, RegionsAndThreadsGiveTheSamePixels) {
+  PenOptions o = options_of(ProfileShape::Scratch, 18.0F, 2.0F);
+  o.smooth = true;
+  const std::vector<Stroke> strokes = {
+      {{{20.0F, 30.0F}}, {{150.0F, 90.0F}}, {{60.0F, 160.0F}}, {{190.0F, 170.0F}}}};
+  const Drawing whole(220, 200, strokes, o);
+  const ThreadLimit limit(1);
+  SlopeImage part(220, 200, Vec2f::Constant(9.0F));
+  const Rect region = {37, 21, 181, 166};
+  pen(part, {}, region, strokes, o);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 220; ++x) {
+      EXPECT_EQ(part(x, y),
+                region.contains(x, y) ? whole.slopes(x, y) : Vec2f(Vec2f::Constant(9.0F)));
+    }
+  }
+}
+
+TEST(Pen, NarrowStrokesDoNotBreakUp) {
+  const PenOptions o = options_of(ProfileShape::Bump, 1.5F, 1.0F);
+  const Drawing d(100, 40, {{{{-10.0F, 10.0F}}, {{110.0F, 27.0F}}}}, o);
+  for (int x = 0; x < 100; ++x) {
+    float sum = 0.0F;
+    for (int y = 0; y < 40; ++y) sum += d.heights(x, y);
+    EXPECT_NEAR(sum, 0.5333F * 1.5F * 1.01F, 0.25F) << x;
+  }
+}
+
+TEST(Pen, DotsAndLimits) {
+  PenOptions o = options_of(ProfileShape::Bump, 20.0F, 2.0F);
+  const Drawing dot(40, 40, {{{{20.0F, 20.0F}}}, {}}, o);
+  EXPECT_FLOAT_EQ(dot.heights(20, 20), 2.0F);
+  EXPECT_NEAR(dot.heights(13, 20), dot.heights(20, 27), 1e-6F);
+  o.width = 0.0F;
+  EXPECT_TRUE(Drawing(40, 40, {{{{20.0F, 20.0F}}}}, o).changed.empty());
+}
+
+TEST(Pen, PressureScalesWidthAndHeight) {
+  PenOptions o = options_of(ProfileShape::Bump, 20.0F, 2.0F);
+  const std::vector<Stroke> half = {{{{-50.0F, 20.0F}, 0.5F}, {{90.0F, 20.0F}, 0.5F}}};
+  EXPECT_FLOAT_EQ(Drawing(40, 40, half, o).heights(20, 20), 1.0F);
+  EXPECT_EQ(Drawing(40, 40, half, o).heights(20, 14), 0.0F);
+  o.pressure = PressureTo::None;
+  EXPECT_FLOAT_EQ(Drawing(40, 40, half, o).heights(20, 20), 2.0F);
+  EXPECT_GT(Drawing(40, 40, half, o).heights(20, 14), 0.0F);
+}
+
+TEST(Pen, RejectsBadInput) {
+  SlopeImage image(8, 8);
+  const auto draw = [&](const Stroke& s, const PenOptions& o) {
+    pen(image, {}, image.rect(), std::vector<Stroke>{s}, o);
+  };
+  const Stroke line = {{{1.0F, 1.0F}}, {{6.0F, 6.0F}}};
+  EXPECT_THROW(draw(line, options_of(ProfileShape::Step, 4.0F, 1.0F)), InvalidInput);
+  PenOptions closed = options_of(ProfileShape::Step, 4.0F, 1.0F);
+  closed.closed = true;
+  EXPECT_THROW(draw(line, closed), InvalidInput);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(draw({{{nan, 0.0F}}}, options_of(ProfileShape::Bump, 4.0F, 1.0F)), InvalidInput);
+  EXPECT_THROW(draw(line, options_of(ProfileShape::Bump, nan, 1.0F)), InvalidInput);
+}
+
+TEST(Pen, FarAwayStrokesAreHarmless) {
+  const PenOptions o = options_of(ProfileShape::Bump, 10.0F, 4.0F);
+  const Drawing d(64, 64, {{{{1e9F, -1e9F}}, {{2e9F, 3e9F}}}}, o);
+  EXPECT_TRUE(d.changed.empty());
+  EXPECT_EQ(d.slopes(5, 5), Vec2f(0.0F, 0.0F));
+}
+
+TEST(SmoothStroke, PassesThroughThePointsWithoutGaps) {
+  const Stroke s = {{{0.0F, 0.0F}, 0.0F}, {{50.0F, 0.0F}, 1.0F}, {{50.0F, 50.0F}, 0.5F}};
+  const Stroke open = smooth_stroke(s, 2.0F);
+  EXPECT_EQ(open.front().position, s[0].position);
+  EXPECT_EQ(open.back().position, s[2].position);
+  for (std::size_t i = 1; i < open.size(); ++i) {
+    EXPECT_LT((open[i].position - open[i - 1].position).norm(), 3.0F);
+  }
+  const Stroke closed = smooth_stroke(s, 2.0F, StrokeEnds::Closed);
+  EXPECT_LT((closed.back().position - s[0].position).norm(), 3.0F);
+  EXPECT_GT((closed.back().position - s[0].position).norm(), 0.5F);
+}
+
+}  // namespace
+}  // namespace normalshop
