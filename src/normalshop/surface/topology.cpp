@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <mutex>
+#include <utility>
 
 #include "normalshop/core/parallel.h"
 
@@ -51,18 +52,6 @@ std::vector<std::uint32_t> first_equal_position(const std::vector<Vec3f>& positi
     first[i] = table[slot];
   }
   return first;
-}
-
-void weld(const Mesh& mesh, Topology& topology) {
-  const std::vector<std::uint32_t> first = first_equal_position(mesh.positions);
-  std::vector<std::uint32_t> id(mesh.positions.size(), no_edge);
-  topology.vertex.resize(mesh.corner_count());
-  for (std::size_t corner = 0; corner < mesh.corner_count(); ++corner) {
-    const std::uint32_t index = mesh.triangles[corner / 3][static_cast<Eigen::Index>(corner % 3)];
-    std::uint32_t& vertex = id[first[index]];
-    if (vertex == no_edge) vertex = topology.vertex_count++;
-    topology.vertex[corner] = vertex;
-  }
 }
 
 class EdgePairing {
@@ -154,6 +143,20 @@ void exclusive_sum(std::vector<std::uint32_t>& counts) {
 
 }  // namespace
 
+Welding weld_positions(const Mesh& mesh) {
+  const std::vector<std::uint32_t> first = first_equal_position(mesh.positions);
+  std::vector<std::uint32_t> id(mesh.positions.size(), no_edge);
+  Welding welding;
+  welding.vertex.resize(mesh.corner_count());
+  for (std::size_t corner = 0; corner < mesh.corner_count(); ++corner) {
+    const std::uint32_t index = mesh.triangles[corner / 3][static_cast<Eigen::Index>(corner % 3)];
+    std::uint32_t& vertex = id[first[index]];
+    if (vertex == no_edge) vertex = welding.vertex_count++;
+    welding.vertex[corner] = vertex;
+  }
+  return welding;
+}
+
 CornerLists corners_of_vertices(std::span<const std::uint32_t> vertex, std::uint32_t vertex_count) {
   CornerLists lists;
   lists.start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
@@ -199,7 +202,9 @@ std::vector<std::uint32_t> pair_edges(std::span<const std::uint32_t> vertex,
 
 Topology make_topology(const Mesh& mesh) {
   Topology topology;
-  weld(mesh, topology);
+  Welding welding = weld_positions(mesh);
+  topology.vertex = std::move(welding.vertex);
+  topology.vertex_count = welding.vertex_count;
   const auto same_chart = [&](std::uint32_t a, std::uint32_t b) {
     const bool same_set =
         mesh.texture_sets.empty() || mesh.texture_sets[a / 3] == mesh.texture_sets[b / 3];

@@ -40,6 +40,13 @@ struct Topology {
   std::vector<std::uint32_t> irregular_edges;
 };
 
+/// Per corner, its vertex, as in Topology.
+struct Welding {
+  std::uint32_t vertex_count = 0;
+  std::vector<std::uint32_t> vertex;
+};
+Welding weld_positions(const Mesh& mesh);
+
 /// Linear in the size of the mesh. Without UVs every edge with a neighbour in the same texture set
 /// is Interior.
 Topology make_topology(const Mesh& mesh);
