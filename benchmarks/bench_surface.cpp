@@ -1,0 +1,101 @@
+/// Texel maps, tangents, normals and topology of a head-sized mesh (17,000 triangles) and of its
+/// subdivision to 1.1 million. The head itself is used when the real data is on the machine.
+
+#include <cstdint>
+#include <utility>
+
+#include "support/data.h"
+#include "support/gltf_corners.h"
+#include "support/meshes.h"
+#include <benchmark/benchmark.h>
+
+#include "normalshop/surface/seams.h"
+#include "normalshop/surface/subdivide.h"
+#include "normalshop/surface/tangents.h"
+#include "normalshop/surface/texel_map.h"
+#include "normalshop/surface/topology.h"
+#include "normalshop/surface/vertex_normals.h"
+
+namespace normalshop {
+namespace {
+
+enum Model { Cube, Sphere, Head };
+
+Mesh load(Model model) {
+  switch (model) {
+    case Cube:
+      return test::cube(38);
+    case Sphere:
+      return test::uv_sphere(188, 47);
+    case Head:
+      break;
+  }
+  const auto file = test::data_file("lee_perry_smith/LeePerrySmith.glb");
+  return file ? test::load_gltf_corners(*file) : Mesh();
+}
+
+/// range(0): the model, range(1): how often it is subdivided.
+const Mesh& mesh_of(benchmark::State& state) {
+  static Mesh mesh;
+  static std::pair<std::int64_t, std::int64_t> current(-1, -1);
+  const std::pair<std::int64_t, std::int64_t> wanted(state.range(0), state.range(1));
+  if (wanted != current) {
+    mesh = subdivide(load(static_cast<Model>(wanted.first)), static_cast<int>(wanted.second));
+    current = wanted;
+  }
+  if (mesh.triangles.empty()) state.SkipWithError("the head is not on this machine");
+  state.counters["triangles"] = static_cast<double>(mesh.triangle_count());
+  return mesh;
+}
+
+void texel_map(benchmark::State& state) {
+  const Mesh& mesh = mesh_of(state);
+  const auto size = static_cast<int>(state.range(2));
+  const auto gutter = static_cast<int>(state.range(3));
+  for (auto _ : state) {
+    const TexelMap map(mesh, 0, size, size, gutter);
+    state.counters["gutter_texels"] = static_cast<double>(map.gutter().size());
+    benchmark::DoNotOptimize(map.owner().data());
+  }
+}
+BENCHMARK(texel_map)
+    ->ArgNames({"model", "subdivided", "size", "gutter"})
+    ->ArgsProduct({{Cube, Sphere, Head}, {0, 3}, {4096}, {0, 8}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void topology(benchmark::State& state) {
+  const Mesh& mesh = mesh_of(state);
+  for (auto _ : state) benchmark::DoNotOptimize(make_topology(mesh));
+}
+
+void tangents(benchmark::State& state) {
+  Mesh mesh = mesh_of(state);
+  for (auto _ : state) {
+    compute_tangents(mesh);
+    benchmark::DoNotOptimize(mesh.tangents.data());
+  }
+}
+
+void normals(benchmark::State& state) {
+  Mesh mesh = mesh_of(state);
+  for (auto _ : state) {
+    compute_normals(mesh);
+    benchmark::DoNotOptimize(mesh.normals.data());
+  }
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"model", "subdivided"})
+      ->ArgsProduct({{Sphere, Head}, {0, 3}})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+}
+BENCHMARK(topology)->Apply(sizes);
+BENCHMARK(tangents)->Apply(sizes);
+BENCHMARK(normals)->Apply(sizes);
+
+}  // namespace
+}  // namespace normalshop
+
+BENCHMARK_MAIN();
