@@ -46,7 +46,7 @@ TEST(Shade, PlanesAreOpenAndPitsAreNot) {
   }
   height(0, 0) = -std::numeric_limits<float>::infinity();
   ambient_occlusion(height, 20.0F, open);
-  EXPECT_LT(open(30, 30), 0.5F);
+  EXPECT_LT(open(30, 30), 0.6F);
   EXPECT_EQ(open(0, 0), 1.0F);
 }
 

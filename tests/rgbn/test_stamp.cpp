@@ -162,7 +162,7 @@ TEST(Stamp, FadesAtItsBorderAndClearsTheRest) {
   const Rect changed = stamp(out, coverage, out.rect(), patch, {30.0F, 30.0F}, o);
   EXPECT_EQ(coverage(30, 30), 1.0F);
   EXPECT_EQ(out(30, 30), Vec2f(1.0F, 0.0F));
-  EXPECT_LT(coverage(21, 30), 0.1F);
+  EXPECT_LT(coverage(21, 30), 0.15F);
   EXPECT_FLOAT_EQ(out(22, 30).x(), coverage(22, 30));
   for (int y = 0; y < 60; ++y) {
     for (int x = 0; x < 60; ++x) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/sample.h"
 #include "normalshop/rgbn/polyline_field.h"
 
 namespace normalshop {
@@ -47,6 +48,11 @@ Vec2f catmull_rom(const std::array<Vec2f, 4>& p, const std::array<float, 4>& t, 
   const Vec2f b1 = mix(a1, a2, t[0], t[2]);
   const Vec2f b2 = mix(a2, a3, t[1], t[3]);
   return mix(b1, b2, t[1], t[2]);
+}
+
+float catmull_rom(const std::array<float, 4>& p, float t) {
+  const std::array<float, 4> w = cubic_weights(t);
+  return std::clamp(p[0] * w[0] + p[1] * w[1] + p[2] * w[2] + p[3] * w[3], 0.0F, 1.0F);
 }
 
 Stroke without_repeats(const Stroke& stroke, StrokeEnds ends) {
@@ -172,6 +178,10 @@ Stroke smooth_stroke(const Stroke& stroke, float spacing, StrokeEnds ends) {
     if (i >= count) return 2.0F * p.back().position - p[p.size() - 2].position;
     return p[static_cast<std::size_t>(i)].position;
   };
+  const auto pressure = [&](std::ptrdiff_t i) {
+    i = closed ? (i + count) % count : std::clamp<std::ptrdiff_t>(i, 0, count - 1);
+    return p[static_cast<std::size_t>(i)].pressure;
+  };
   Stroke out;
   for (std::ptrdiff_t i = 0; i + (closed ? 0 : 1) < count; ++i) {
     const std::array<Vec2f, 4> q = {at(i - 1), at(i), at(i + 1), at(i + 2)};
@@ -179,13 +189,13 @@ Stroke smooth_stroke(const Stroke& stroke, float spacing, StrokeEnds ends) {
     for (std::size_t k = 1; k < 4; ++k) {
       knots[k] = knots[k - 1] + std::sqrt((q[k] - q[k - 1]).norm());
     }
-    const float from = p[static_cast<std::size_t>(i)].pressure;
-    const float to = p[static_cast<std::size_t>((i + 1) % count)].pressure;
+    const std::array<float, 4> force = {pressure(i - 1), pressure(i), pressure(i + 1),
+                                        pressure(i + 2)};
     const int steps = pieces(1.2F * (q[2] - q[1]).norm(), spacing);
     for (int k = 0; k < steps; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(steps);
       out.push_back({k == 0 ? q[1] : catmull_rom(q, knots, knots[1] + t * (knots[2] - knots[1])),
-                     from + t * (to - from)});
+                     catmull_rom(force, t)});
     }
   }
   if (!closed) out.push_back(p.back());

@@ -57,7 +57,8 @@ struct PenOptions {
 ///
 /// - Distance to the polyline with round joints and ends, to the nearest segment. Slopes are the
 ///   exact gradient of one height, also where pressure and taper change it along the stroke, except
-///   on the stroke's medial axis.
+///   on the stroke's medial axis. A closed stroke that changes the level keeps its height: there
+///   pressure scales the width alone.
 /// - Where strokes meet, the one with the larger |height| counts: they join, they don't add up.
 /// - Closed strokes: inside is where the winding number is not 0, whatever the direction. Inside a
 ///   step the level is constant: slopes and coverage are 0 except along the stroke.
@@ -76,8 +77,9 @@ Rect pen_height(MaskSpan height, Rect region, std::span<const Stroke> strokes,
 /// further between points; the returned rectangle says how far).
 int reach(const PenOptions& options);
 
-/// Centripetal Catmull-Rom curve through the stroke's points, as points at most `spacing` pixels
-/// apart; pressure linear. A closed one returns to its first point without repeating it.
+/// Centripetal Catmull-Rom curve through the stroke's points, as points about `spacing` pixels
+/// apart (at most 1000 from one point to the next); pressure follows a curve too. A closed one
+/// returns to its first point without repeating it. Throws InvalidInput unless spacing > 0.
 enum class StrokeEnds { Open, Closed };
 Stroke smooth_stroke(const Stroke& stroke, float spacing, StrokeEnds ends = StrokeEnds::Open);
 

@@ -39,6 +39,8 @@ struct PolylineField::Segment {
   bool start_cap = false;
   bool end_cap = false;
   std::uint32_t shape = 0;
+  std::ptrdiff_t previous = 0;  ///< from this to its neighbours in the list of segments
+  std::ptrdiff_t next = 0;
 };
 
 struct PolylineField::Shape {
@@ -57,6 +59,15 @@ struct PolylineField::Nearest {
 
   float half_width() const { return segment->half_width + along * segment->half_width_rate; }
   float fade() const { return segment->fade + along * segment->fade_rate; }
+};
+
+struct PolylineField::Along {
+  const Segment* segment;
+  float at;
+  Vec2f gradient;
+
+  float half_width() const { return segment->half_width + at * segment->half_width_rate; }
+  float fade() const { return segment->fade + at * segment->fade_rate; }
 };
 
 PolylineField::PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile,
@@ -139,9 +150,15 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     Segment& s = segments_[first + i];
     Segment& next = segments_[first + (i + 1) % count];
     s.end_cap = !ring && i + 1 == count;
+    s.next = s.end_cap
+                 ? 0
+                 : static_cast<std::ptrdiff_t>((i + 1) % count) - static_cast<std::ptrdiff_t>(i);
+    next.previous = s.end_cap ? next.previous : -s.next;
     if (i == 0) s.start_cap = !ring;
     if (s.end_cap) continue;
-    s.end_tangent = next.start_tangent = s.direction + next.direction;
+    const Vec2f mean = 0.5F * (s.direction + next.direction);
+    // At a hairpin there is no mean direction: both keep their own.
+    if (mean.norm() > 0.1F) s.end_tangent = next.start_tangent = mean.normalized();
   }
 }
 
@@ -313,6 +330,29 @@ FieldSample PolylineField::sample(const Vec2f& p, const List& segments) const {
   return best;
 }
 
+/// Arc length with directions that turn evenly along each segment instead of at its ends: the s
+/// with (p - q(s)) . t(s) = 0. It is continuous beside a bend, where the nearest point jumps in
+/// speed.
+PolylineField::Along PolylineField::along(const Vec2f& p, const Nearest& near) {
+  const Segment* s = near.segment;
+  const bool after = near.along >= s->length && near.offset.dot(s->end_tangent) > 0.0F;
+  const bool before = near.along <= 0.0F && near.offset.dot(s->start_tangent) < 0.0F;
+  if (after) s += s->next;
+  if (before) s += s->previous;
+  const Vec2f from_start = p - s->a;
+  const Vec2f turn = (s->end_tangent - s->start_tangent) / std::max(s->length, 1e-6F);
+  const float linear = from_start.dot(turn) - s->direction.dot(s->start_tangent);
+  const float square = -s->direction.dot(turn);
+  float at = std::clamp(from_start.dot(s->direction), 0.0F, s->length);
+  float slope = linear;
+  for (int i = 0; i < 4; ++i) {
+    slope = std::min(linear + 2.0F * at * square, -0.2F);  // the centre of the bend is singular
+    const float value = from_start.dot(s->start_tangent) + at * (linear + at * square);
+    at = std::clamp(at - value / slope, 0.0F, s->length);
+  }
+  return {s, at, (s->start_tangent + at * turn) / -slope};
+}
+
 FieldSample PolylineField::level(const Vec2f& p, const Shape& shape) const {
   FieldSample s;
   if (!shape.closed || !inside(p, shape)) return s;
@@ -322,33 +362,30 @@ FieldSample PolylineField::level(const Vec2f& p, const Shape& shape) const {
 }
 
 FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Nearest& near) const {
-  const float half_width = near.half_width();
   const float distance = std::sqrt(near.squared);
-  if (!(distance < half_width) || half_width < 1e-6F) return level(p, shape);
+  if (!(distance < shape.largest_half_width)) return level(p, shape);
   const Segment& s = *near.segment;
   const bool at_start = near.along <= 0.0F;
   const bool at_end = near.along >= s.length;
   if ((at_start && s.start_cap) || (at_end && s.end_cap)) return cap(near);
+  const Along v = along(p, near);
+  const float half_width = v.half_width();
+  if (!(distance < half_width) || half_width < 1e-6F) return level(p, shape);
   const bool joint = at_start || at_end;
   const Vec2f& tangent = at_start ? s.start_tangent : at_end ? s.end_tangent : s.direction;
-  const float beside_left = near.offset.dot(left_of(tangent));
-  float side = beside_left < 0.0F ? -1.0F : 1.0F;  // of the point
-  const Vec2f away = !joint            ? Vec2f(side * left_of(s.direction))
-                     : distance > 0.0F ? Vec2f(near.offset / distance)
-                                       : Vec2f(0.0F, 0.0F);
+  float side = near.offset.dot(left_of(tangent)) < 0.0F ? -1.0F : 1.0F;
+  const Vec2f away =
+      joint && distance > 0.0F ? Vec2f(near.offset / distance) : Vec2f(side * left_of(tangent));
   if (shape.closed) {
     side = distance < on_line ? side * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
   }
   const float u = side * distance / half_width;
   const Profile::Value h = profile_.at(u);
-  const float amplitude = height_ * near.fade();
-  Vec2f gradient = amplitude * h.slope / half_width * side * away;
-  if (!joint) {
-    const float along_rate =
-        height_ * s.fade_rate * h.height - amplitude * h.slope * u * s.half_width_rate / half_width;
-    gradient += along_rate * s.direction;
-  }
-  return {amplitude * h.height, {gradient.x(), -gradient.y()}, coverage(u, near.fade())};
+  const float amplitude = height_ * v.fade();
+  const float along_rate = height_ * v.segment->fade_rate * h.height -
+                           amplitude * h.slope * u * v.segment->half_width_rate / half_width;
+  const Vec2f gradient = amplitude * h.slope / half_width * side * away + along_rate * v.gradient;
+  return {amplitude * h.height, {gradient.x(), -gradient.y()}, coverage(u, v.fade())};
 }
 
 /// Round end of an open line: the odd part of the profile turns over smoothly from one side to the
@@ -356,6 +393,7 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
 FieldSample PolylineField::cap(const Nearest& near) const {
   const float half_width = near.half_width();
   const float distance = std::sqrt(near.squared);
+  if (!(distance < half_width) || half_width < 1e-6F) return {};
   const float u = distance / half_width;
   const Profile::Value l = profile_.at(u);
   const Profile::Value r = profile_.at(-u);

@@ -53,6 +53,7 @@ class PolylineField {
   struct Segment;
   struct Shape;
   struct Nearest;
+  struct Along;
   struct Bins;
   using List = std::vector<std::uint32_t>;
 
@@ -66,6 +67,7 @@ class PolylineField {
   FieldSample sample(const Vec2f& p, const List& segments) const;
   FieldSample beside(const Vec2f& p, const Shape& shape, const Nearest& nearest) const;
   FieldSample cap(const Nearest& nearest) const;
+  static Along along(const Vec2f& p, const Nearest& nearest);
   FieldSample level(const Vec2f& p, const Shape& shape) const;
   float coverage(float u, float fade) const;
   bool inside(const Vec2f& p, const Shape& shape) const;

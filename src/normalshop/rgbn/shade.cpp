@@ -75,6 +75,18 @@ Vec3f shade_pixel(const Vec3f& n, const Vec3f& albedo, float open, float lit,
   return options.exposure * sum;
 }
 
+/// Heights that are not finite stand for nothing; -infinity and NaN fail every comparison below.
+constexpr float nothing = 1e30F;
+
+/// Nearest integer of |x| < 16384 (std::lround is a call without SSE 4.1).
+int rounded(float x) { return static_cast<int>(x + 16384.5F) - 16384; }
+
+/// In [0, 1), decided by the pixel alone.
+float random_part(int x, int y, std::uint32_t seed) {
+  const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed);
+  return static_cast<float>(bits >> 8U) * 0x1p-24F;
+}
+
 template <class Body>
 void for_each_pixel(const Rect& rect, const Body& body) {
   parallel_for(static_cast<std::size_t>(rect.height()), 8, [&](std::size_t a, std::size_t b) {
@@ -130,14 +142,14 @@ void studio_background(ColorSpan target) {
     const float dy = (static_cast<float>(y) + 0.5F) / height - 0.42F;
     const float t = smoothstep(0.0F, 0.85F, std::sqrt(dx * dx + dy * dy));
     // A grain of less than one 8-bit code hides the bands of a dark gradient.
-    const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 7U);
-    const float grain = static_cast<float>(bits >> 8U) * 0x1p-24F - 0.5F;
+    const float grain = random_part(x, y, 7U) - 0.5F;
     target(x, y) = (light + t * (dark - light)) * (1.0F + 0.03F * grain);
   });
 }
 
 void ambient_occlusion(MaskView height, float radius, MaskSpan target) {
   assert(height.rect() == target.rect());
+  radius = std::min(radius, 16000.0F);
   constexpr int directions = 12;
   constexpr int steps = 7;
   std::array<Vec2f, directions> turn;
@@ -151,22 +163,25 @@ void ambient_occlusion(MaskView height, float radius, MaskSpan target) {
       target(x, y) = 1.0F;
       return;
     }
-    const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 11U);
-    const float jitter = static_cast<float>(bits >> 8U) * 0x1p-24F;
+    const float jitter = random_part(x, y, 11U);
+    std::array<float, steps> distance;
+    std::array<float, steps> steepness;  // of a unit rise there, fading out towards the radius
+    for (std::size_t k = 0; k < steps; ++k) {
+      const float part = (static_cast<float>(k) + 0.3F + 0.7F * jitter) / steps;
+      distance[k] = 1.0F + part * part * radius;
+      steepness[k] = (1.0F - part * part) / distance[k];
+    }
     float open = 0.0F;
     for (const Vec2f& d : turn) {
-      float sine = 0.0F;
-      for (int k = 0; k < steps; ++k) {
-        const float part = (static_cast<float>(k) + 0.3F + 0.7F * jitter) / steps;
-        const float r = 1.0F + part * part * radius;
-        const int px = static_cast<int>(std::lround(static_cast<float>(x) + r * d.x()));
-        const int py = static_cast<int>(std::lround(static_cast<float>(y) + r * d.y()));
-        if (!height.rect().contains(px, py) || !std::isfinite(height(px, py))) continue;
+      float horizon = 0.0F;
+      for (std::size_t k = 0; k < steps; ++k) {
+        const int px = x + rounded(distance[k] * d.x());
+        const int py = y + rounded(distance[k] * d.y());
+        if (!height.rect().contains(px, py)) continue;
         const float rise = height(px, py) - here;
-        const float fade = 1.0F - part * part;
-        sine = std::max(sine, fade * rise / std::sqrt(rise * rise + r * r));
+        if (rise < nothing) horizon = std::max(horizon, rise * steepness[k]);
       }
-      open += 1.0F - sine * sine;
+      open += 1.0F / (1.0F + horizon * horizon);
     }
     target(x, y) = open / directions;
   });
@@ -182,16 +197,16 @@ void cast_shadow(MaskView height, const Vec3f& direction, float distance, MaskSp
   }
   const Vec2f step = flat / length;
   const float climb = direction.z() / length;
+  distance = std::min(distance, 16000.0F);
   for_each_pixel(target.rect(), [&](int x, int y) {
     const float here = height(x, y);
     float lit = 1.0F;
-    const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 13U);
-    const float jitter = static_cast<float>(bits >> 8U) * 0x1p-24F;
+    const float jitter = random_part(x, y, 13U);
     // Steps grow with the distance, and so does the penumbra.
     for (float r = 2.0F + jitter; std::isfinite(here) && r < distance && lit > 0.0F;
          r += 1.0F + 0.06F * r) {
-      const int px = static_cast<int>(std::lround(static_cast<float>(x) + r * step.x()));
-      const int py = static_cast<int>(std::lround(static_cast<float>(y) + r * step.y()));
+      const int px = x + rounded(r * step.x());
+      const int py = y + rounded(r * step.y());
       if (!height.rect().contains(px, py)) break;
       const float above = height(px, py) - (here + climb * r) - 1.0F;
       if (std::isfinite(above)) lit = std::min(lit, 1.0F - above / (1.0F + 0.12F * r));
