@@ -48,33 +48,36 @@ Vec2f PixelLookup::weights(int x, int y) const {
   return sum > 1.0F ? Vec2f(w / sum) : w;
 }
 
-void pull_pixel(const PixelLookup& look, int x, int y, bool albedo, EditingChart& chart) {
+void pull_pixel(const PixelLookup& look, int x, int y, const PullOptions& options,
+                EditingChart& chart) {
   const Vec2f w = look.weights(x, y);
   const Vec3f weights(1.0F, w.x(), w.y());
   const Vec3f n = look.frame.normals * weights;
   const Vec2f uv = look.uvs * weights;
   const Vec3f base = n.normalized();
   chart.base_normal(x, y) = base;
-  const Mat3f frame = look.frame.frame(weights, n, look.space, chart.grid.view);
-  const Vec3f detail = frame * look.set->normals.sample(uv);
-  const float length = detail.norm();
-  chart.normal(x, y) = length > 1e-6F ? Vec3f(detail / length) : base;
-  if (albedo) chart.albedo(x, y) = look.set->albedo.sample(uv);
+  if (options.normals) {
+    const Mat3f frame = look.frame.frame(weights, n, look.space, chart.grid.view);
+    const Vec3f detail = frame * look.set->normals.sample(uv);
+    const float length = detail.norm();
+    chart.normal(x, y) = length > 1e-6F ? Vec3f(detail / length) : base;
+  }
+  if (options.albedo) chart.albedo(x, y) = look.set->albedo.sample(uv);
 }
 
-void pull_row(const Mesh& mesh, const StorageAtlas& storage, int y, bool albedo,
+void pull_row(const Mesh& mesh, const StorageAtlas& storage, int y, const PullOptions& options,
               EditingChart& chart) {
   PixelLookup look;
   const std::uint32_t* ids = chart.ids.triangle.row(y);
   for (int x = 0; x < chart.grid.width(); ++x) {
     if (ids[x] == no_triangle) {
       chart.base_normal(x, y) = Vec3f::Zero();
-      chart.normal(x, y) = Vec3f::Zero();
-      if (albedo) chart.albedo(x, y) = Vec3f::Zero();
+      if (options.normals) chart.normal(x, y) = Vec3f::Zero();
+      if (options.albedo) chart.albedo(x, y) = Vec3f::Zero();
       continue;
     }
     if (ids[x] != look.triangle) look.load(mesh, storage, chart.grid, ids[x]);
-    pull_pixel(look, x, y, albedo, chart);
+    pull_pixel(look, x, y, options, chart);
   }
 }
 
@@ -85,11 +88,11 @@ void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart
   const int width = chart.grid.width();
   const int height = chart.grid.height();
   chart.base_normal.resize(width, height);
-  chart.normal.resize(width, height);
+  chart.normal.resize(options.normals ? width : 0, options.normals ? height : 0);
   chart.albedo.resize(options.albedo ? width : 0, options.albedo ? height : 0);
   parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
-      pull_row(mesh, storage, static_cast<int>(y), options.albedo, chart);
+      pull_row(mesh, storage, static_cast<int>(y), options, chart);
     }
   });
 }

@@ -12,12 +12,13 @@ struct EditingChart {
   ChartGrid grid;
   IdBuffer ids;
   Image<Vec3f> base_normal;  ///< N^b; points away from the viewer on back faces
-  Image<Vec3f> normal;       ///< N^f, the stored details in the base normal's frame
+  Image<Vec3f> normal;       ///< N^f: the stored normals, details included; empty unless asked for
   ColorImage albedo;         ///< linear RGB; empty unless asked for
   MaskImage weight;          ///< effective chart: see effective.h; empty until asked for
 };
 
 struct PullOptions {
+  bool normals = true;  ///< false: base normals only, for edits that don't read the details
   bool albedo = false;
 };
 

@@ -123,7 +123,7 @@ void draw_small(const Vertex& a, const Vertex& b, const Vertex& c, const Box& bo
       const auto v2 = hn::Add(ramp2, hn::Set(di, e2.value + k * e2.step_x));
       const auto limit = hn::Set(di, box.x1 - x + 1);
       const auto negative = hn::Or(hn::Or(v0, v1), v2);
-      const auto inside = hn::And(hn::Ge(negative, hn::Zero(di)), hn::Lt(iota, limit));
+      const auto inside = hn::And(hn::Gt(negative, hn::Set(di, -1)), hn::Lt(iota, limit));
       const auto xs = hn::Add(iota_f, hn::Set(d, static_cast<float>(x)));
       const auto z = hn::Min(hn::Max(hn::Add(row_z, hn::Mul(dz, xs)), low), high);
       write_pixels(d, hn::RebindMask(d, inside), z, id, depth + x, triangle + x);

@@ -1,0 +1,34 @@
+#include "normalshop/document/document.h"
+
+#include "normalshop/core/error.h"
+#include "normalshop/document/apply_edit.h"
+#include "normalshop/surface/tangents.h"
+
+namespace normalshop {
+
+Document::Document(Mesh mesh, std::vector<Maps> maps, const Progress& progress)
+    : mesh_(std::move(mesh)) {
+  if (maps.size() != mesh_.texture_set_names.size()) {
+    throw InvalidInput("the model has " + std::to_string(mesh_.texture_set_names.size()) +
+                       " texture sets but maps were given for " + std::to_string(maps.size()));
+  }
+  if (mesh_.tangents.empty()) {
+    progress.at(0.0, "tangents");
+    compute_tangents(mesh_);
+  }
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    progress.at(static_cast<double>(i + 1) / static_cast<double>(maps.size() + 1), "texels");
+    const int width = maps[i].normals.width();
+    const int height = maps[i].normals.height();
+    storage_.sets.push_back({std::move(maps[i].normals), std::move(maps[i].albedo),
+                             TexelMap(mesh_, static_cast<std::uint32_t>(i), width, height)});
+  }
+}
+
+EditReport Document::apply(const Edit& edit) {
+  const EditReport report = apply_edit(edit, mesh_, storage_);
+  log_.push_back(edit);
+  return report;
+}
+
+}  // namespace normalshop

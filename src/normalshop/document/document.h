@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "normalshop/chart/push.h"
+#include "normalshop/chart/storage.h"
+#include "normalshop/core/progress.h"
+#include "normalshop/document/edit.h"
+
+namespace normalshop {
+
+/// Seconds that an edit spent in each stage.
+struct EditTimes {
+  double pull = 0.0;
+  double operate = 0.0;
+  double push = 0.0;
+};
+
+/// What an edit did.
+struct EditReport {
+  int chart_width = 0;
+  int chart_height = 0;
+  float pixel = 0.0F;  ///< object units
+  PushResult pushed;
+  EditTimes times;
+};
+
+/// A model, its storage atlas and the edits made to it. All changes go through apply(): the command
+/// line, the studio and scripts use this facade and nothing else.
+class Document {
+ public:
+  /// One texture set's maps.
+  struct Maps {
+    NormalMap normals;
+    ColorMap albedo;
+  };
+
+  /// One Maps per entry of mesh.texture_set_names. Computes MikkTSpace tangents when the mesh has
+  /// none, and which triangle each texel shows. Throws InvalidInput when the numbers don't fit.
+  Document(Mesh mesh, std::vector<Maps> maps, const Progress& progress = {});
+
+  const Mesh& mesh() const { return mesh_; }
+  const StorageAtlas& storage() const { return storage_; }
+  const std::vector<Edit>& log() const { return log_; }
+
+  /// Applies an edit and adds it to the log. Throws InvalidInput when a stroke does not meet the
+  /// surface that its view shows; the document is unchanged then.
+  EditReport apply(const Edit& edit);
+
+ private:
+  Mesh mesh_;
+  StorageAtlas storage_;
+  std::vector<Edit> log_;
+};
+
+}  // namespace normalshop

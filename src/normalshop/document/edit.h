@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "normalshop/chart/details.h"
+#include "normalshop/chart/view.h"
+#include "normalshop/document/edit_operator.h"
+
+namespace normalshop {
+
+/// A view as a recipe gives it; height 0: as wide as high.
+struct FreeView {
+  Vec3f direction = Vec3f::UnitZ();  ///< from the surface to the viewer
+  Vec3f up = Vec3f::UnitY();
+  std::optional<Vec3f> center;  ///< none: the view frames the whole model
+  float width = 0.0F;
+  float height = 0.0F;
+};
+struct FacingView {
+  Vec3f point = Vec3f::Zero();
+  float width = 0.0F;
+  float height = 0.0F;
+};
+using ViewSpec = std::variant<NamedView, FreeView, FacingView>;
+View resolve(const ViewSpec& spec, const Mesh& mesh);
+
+/// What happens to the details that exist under an edit.
+enum class DetailsRule { Keep, Ignore };
+constexpr auto names_of(DetailsRule) { return std::array<std::string_view, 2>{"keep", "ignore"}; }
+
+/// Angles of the effective chart in degrees: full strength up to the first, none from the second.
+struct EffectiveAngles {
+  float full = 60.0F;
+  float zero = 75.0F;
+};
+
+/// One recordable change: view + operator + options + strokes. No pixels.
+struct Edit {
+  std::shared_ptr<const EditOperator> operation;
+  ViewSpec view = NamedView::Front;
+  EditMode mode = EditMode::View;
+  DetailsRule details = DetailsRule::Keep;
+  float strength = 1.0F;
+  EffectiveAngles effective;
+  std::vector<UnitStroke> strokes;
+  std::string path;  ///< where it was read from, for messages: "scar.json: edits[0]"
+};
+
+/// A list of edits; as JSON: docs/recipes.md.
+struct Recipe {
+  std::vector<Edit> edits;
+};
+
+/// `assets` loads what the edits name. Throws InvalidInput naming the file and field.
+Recipe parse_recipe(std::string_view json, std::string_view file, Assets& assets);
+Value to_value(const Recipe& recipe);
+
+}  // namespace normalshop

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "normalshop/document/assets.h"
+#include "normalshop/document/field_reader.h"
+#include "normalshop/rgbn/stroke.h"
+
+namespace normalshop {
+
+/// A point of a recipe's stroke: object units from the view's centre, x right, y up.
+struct UnitPoint {
+  Vec2f position;
+  float pressure = 1.0F;
+};
+using UnitStroke = std::vector<UnitPoint>;
+
+/// Part of a view in object units from its centre, y up.
+struct Extent {
+  Vec2f low = Vec2f::Constant(3.4e38F);
+  Vec2f high = Vec2f::Constant(-3.4e38F);
+  bool empty() const { return !(low.x() <= high.x() && low.y() <= high.y()); }
+};
+/// The box around the strokes, widened; empty without points.
+Extent extent_of(const std::vector<UnitStroke>& strokes, float margin);
+
+/// What an operator sees of an editing chart: pixels, and two numbers in each.
+struct OperatorInput {
+  SlopeView source;    ///< before the edit (with details ignored: the base surface); extended past
+                       ///< borders; empty unless the operator reads()
+  MaskView validity;   ///< 1 where source is seen facing surface; empty likewise
+  Rect region;         ///< where the result is wanted; the rest stays as it is
+  Rect view;           ///< the view's whole extent in pixels of this chart
+  float pixel = 1.0F;  ///< object units per pixel
+  std::vector<Stroke> strokes;  ///< in pixels
+};
+
+/// An operator with its options: the link between floors 2 and 4. It knows neither mesh nor UI.
+class EditOperator {
+ public:
+  EditOperator() = default;
+  EditOperator(const EditOperator&) = delete;
+  EditOperator& operator=(const EditOperator&) = delete;
+  virtual ~EditOperator() = default;
+
+  virtual std::string_view name() const = 0;
+  virtual Value options() const = 0;
+  /// Throws InvalidInput (with `path` in front) when these strokes don't fit the operator.
+  virtual void check_strokes(const std::vector<UnitStroke>& strokes,
+                             const std::string& path) const = 0;
+  /// Does it read the details under it?
+  virtual bool reads() const = 0;
+  /// Loads what the options name.
+  virtual void load(Assets&) {}
+  /// Where it may change something; empty: the whole view.
+  virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
+  /// Object units read beyond the extent.
+  virtual float reach() const { return 0.0F; }
+  /// Fills change and coverage (both zero before) and returns where they are not zero.
+  virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
+};
+
+/// An entry of the registry.
+struct OperatorType {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view strokes;  ///< what its strokes mean
+  Value::Array (*fields)();
+  std::unique_ptr<EditOperator> (*make)(const FieldReader& options);
+};
+/// All operators, in the order of the documentation.
+const std::vector<OperatorType>& operator_types();
+/// Null when there is none of that name.
+const OperatorType* find_operator(std::string_view name);
+
+/// The operators and their options, for `describe` and later the studio.
+Value describe_operators();
+
+}  // namespace normalshop

@@ -1,0 +1,116 @@
+#include "normalshop/document/operators/filter_area.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "normalshop/core/error.h"
+#include "normalshop/core/parallel.h"
+#include "normalshop/rgbn/pen.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr float feather_share = 0.04F;
+
+float size_of(const std::vector<Stroke>& strokes) {
+  Vec2f low = Vec2f::Constant(3.4e38F);
+  Vec2f high = -low;
+  for (const Stroke& stroke : strokes) {
+    for (const StrokePoint& p : stroke) {
+      low = low.cwiseMin(p.position);
+      high = high.cwiseMax(p.position);
+    }
+  }
+  return std::max(0.0F, (high - low).minCoeff());
+}
+
+/// Closed polygons filled with a soft edge: the height of a closed step.
+Rect fill_inside(const std::vector<Stroke>& polygons, float feather, Rect region, MaskSpan mask) {
+  PenOptions step;
+  step.profile = ProfileShape::Step;
+  step.closed = true;
+  step.smooth = false;
+  step.height = 1.0F;
+  step.width = std::max(feather, 1.0F);
+  step.pressure = PressureTo::None;
+  return pen_height(mask, region, polygons, step);
+}
+
+Rect fill_brush(const FilterAreaOptions& options, const OperatorInput& input, MaskSpan mask) {
+  PenOptions brush;
+  brush.profile = ProfileShape::Custom;
+  const float plateau = options.hardness;
+  brush.curve = plateau > 0.0F
+                    ? Curve({{-1.0F, 0.0F}, {-plateau, 1.0F}, {plateau, 1.0F}, {1.0F, 0.0F}})
+                    : Curve({{-1.0F, 0.0F}, {0.0F, 1.0F}, {1.0F, 0.0F}});
+  brush.width = options.brush;
+  brush.height = 1.0F;
+  brush.smooth = true;
+  return pen_height(mask, input.region, input.strokes, brush);
+}
+
+/// The view's rectangle, drawn in by half the feather so that the mask is 0 at its border.
+Stroke view_polygon(const Rect& view, float feather) {
+  const float inset = 0.5F * feather;
+  const float x0 = static_cast<float>(view.x0) + inset;
+  const float y0 = static_cast<float>(view.y0) + inset;
+  const float x1 = static_cast<float>(view.x1) - inset;
+  const float y1 = static_cast<float>(view.y1) - inset;
+  return {{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}};
+}
+
+}  // namespace
+
+void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes,
+                const std::string& path) {
+  if (options.area == FilterArea::View) {
+    if (!strokes.empty()) {
+      throw InvalidInput(path + ": area \"view\" takes no strokes; use \"brush\" or \"inside\"");
+    }
+    return;
+  }
+  if (strokes.empty()) throw InvalidInput(path + ": this area needs at least one stroke");
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    if (options.area == FilterArea::Inside && strokes[i].size() < 3) {
+      throw InvalidInput(path + "[" + std::to_string(i) +
+                         "]: needs at least 3 points to enclose an area");
+    }
+  }
+}
+
+Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes) {
+  if (options.area == FilterArea::View) return {};
+  if (options.area == FilterArea::Brush) return extent_of(strokes, 0.6F * options.brush);
+  const Extent box = extent_of(strokes, 0.0F);
+  const float feather =
+      options.feather > 0.0F ? options.feather : feather_share * (box.high - box.low).minCoeff();
+  return extent_of(strokes, 0.5F * feather);
+}
+
+Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, MaskSpan mask) {
+  if (options.area == FilterArea::Brush) return fill_brush(options, input, mask);
+  if (options.area == FilterArea::Inside) {
+    const float feather =
+        options.feather > 0.0F ? options.feather : feather_share * size_of(input.strokes);
+    return fill_inside(input.strokes, feather, input.region, mask);
+  }
+  const auto side = static_cast<float>(std::min(input.view.width(), input.view.height()));
+  const float feather =
+      std::min(options.feather > 0.0F ? options.feather : feather_share * side, 0.9F * side);
+  return fill_inside({view_polygon(input.view, feather)}, feather, input.region, mask);
+}
+
+void keep_masked_change(SlopeView source, MaskView mask, SlopeSpan filtered_to_change,
+                        Rect region) {
+  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
+    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
+      for (int x = region.x0; x < region.x1; ++x) {
+        Vec2f& v = filtered_to_change(x, y);
+        v = mask(x, y) * (v - source(x, y));
+      }
+    }
+  });
+}
+
+}  // namespace normalshop

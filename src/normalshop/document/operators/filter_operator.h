@@ -1,0 +1,65 @@
+#pragma once
+
+#include "normalshop/core/error.h"
+#include "normalshop/document/operators/filter_area.h"
+#include "normalshop/document/option_values.h"
+
+namespace normalshop {
+
+/// Options of a filter edit: the filter's own, then where it works.
+template <class Options>
+struct FilterEditOptions : Options, FilterAreaOptions {
+  static constexpr auto fields() {
+    return std::tuple_cat(Options::fields(), filter_area_fields<FilterEditOptions>());
+  }
+};
+
+/// An edit that filters the slopes in an area. `Filter` has Options, name, summary, and
+/// apply(source, validity, target, region, options), reach in units of sigma.
+template <class Filter>
+class FilterOperator : public EditOperator {
+ public:
+  using Options = FilterEditOptions<typename Filter::Options>;
+
+  explicit FilterOperator(const FieldReader& options) : options_(read_options<Options>(options)) {
+    if (options_.area == FilterArea::Brush && !(options_.brush > 0.0F)) {
+      options.required("brush").fail("above 0");
+    }
+    Filter::check(options_, options);
+  }
+  std::string_view name() const override { return Filter::name; }
+  Value options() const override { return options_value(options_); }
+  bool reads() const override { return true; }
+  void check_strokes(const std::vector<UnitStroke>& strokes,
+                     const std::string& path) const override {
+    check_area(options_, strokes, path);
+  }
+  Extent extent(const std::vector<UnitStroke>& strokes) const override {
+    return area_extent(options_, strokes);
+  }
+  float reach() const override { return 4.0F * options_.sigma; }
+
+  Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
+    const Options scaled = scale_lengths(options_, 1.0F / input.pixel);
+    const Rect region = intersect(area_mask(scaled, input, coverage), input.region);
+    if (region.empty()) return {};
+    Filter::apply(input.source, input.validity, change, region, scaled);
+    keep_masked_change(input.source, coverage, change, region);
+    return region;
+  }
+
+ private:
+  Options options_;
+};
+
+template <class Filter>
+OperatorType filter_type() {
+  return {Filter::name, Filter::summary,
+          "Where it works, for the areas \"brush\" and \"inside\"; none for \"view\"",
+          describe_fields<typename FilterOperator<Filter>::Options>,
+          [](const FieldReader& options) -> std::unique_ptr<EditOperator> {
+            return std::make_unique<FilterOperator<Filter>>(options);
+          }};
+}
+
+}  // namespace normalshop

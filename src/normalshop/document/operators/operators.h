@@ -1,0 +1,14 @@
+#pragma once
+
+#include "normalshop/document/edit_operator.h"
+
+/// One function an operator, each in its own file; registry.cpp lists them.
+namespace normalshop {
+
+OperatorType pen_operator();
+OperatorType stamp_operator();
+OperatorType text_operator();
+OperatorType smooth_operator();
+OperatorType sharpen_operator();
+
+}  // namespace normalshop

@@ -1,0 +1,29 @@
+#include "normalshop/document/operators/filter_operator.h"
+#include "normalshop/document/operators/operators.h"
+#include "normalshop/rgbn/sharpen.h"
+
+namespace normalshop {
+
+namespace {
+
+struct SharpenFilter {
+  using Options = SharpenOptions;
+  static constexpr std::string_view name = "sharpen";
+  static constexpr std::string_view summary =
+      "Enhances details (unsharp mask), or edges without the finest noise";
+  static void check(const Options& options, const FieldReader& reader) {
+    if (options.noise_sigma > 0.0F && options.noise_sigma >= options.sigma) {
+      reader.required("noise_sigma").fail("below sigma");
+    }
+  }
+  static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
+                    const Options& options) {
+    sharpen(source, validity, target, region, options);
+  }
+};
+
+}  // namespace
+
+OperatorType sharpen_operator() { return filter_type<SharpenFilter>(); }
+
+}  // namespace normalshop

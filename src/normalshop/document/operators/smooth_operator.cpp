@@ -1,0 +1,24 @@
+#include "normalshop/document/operators/filter_operator.h"
+#include "normalshop/document/operators/operators.h"
+#include "normalshop/rgbn/smooth.h"
+
+namespace normalshop {
+
+namespace {
+
+struct SmoothFilter {
+  using Options = SmoothOptions;
+  static constexpr std::string_view name = "smooth";
+  static constexpr std::string_view summary = "Gaussian smoothing of the slopes";
+  static void check(const Options&, const FieldReader&) {}
+  static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
+                    const Options& options) {
+    smooth(source, validity, target, region, options);
+  }
+};
+
+}  // namespace
+
+OperatorType smooth_operator() { return filter_type<SmoothFilter>(); }
+
+}  // namespace normalshop

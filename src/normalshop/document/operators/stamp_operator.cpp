@@ -1,0 +1,72 @@
+#include "normalshop/document/operators/operators.h"
+#include "normalshop/document/operators/placed_operator.h"
+
+namespace normalshop {
+
+namespace {
+
+struct StampEditOptions : StampOptions {
+  std::string patch;
+
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        std::tuple{
+            field("patch", &StampEditOptions::patch,
+                  "File of the patch: a tangent-space normal map, green up, its alpha is the "
+                  "opacity; relative to the recipe")},
+        StampOptions::fields());
+  }
+};
+
+class StampOperator : public PlacedOperator {
+ public:
+  explicit StampOperator(const FieldReader& options)
+      : options_(read_options<StampEditOptions>(options)) {
+    if (options_.patch.empty()) options.required("patch").fail("the name of a file");
+    const FieldReader size = options.required("size");
+    if (options_.size <= 0.0F) size.fail("above 0");
+    for (const std::string_view name : {"scale_x", "scale_y"}) {
+      if (options.has(name) && options.required(name).number() == 0.0) {
+        options.required(name).fail("a scale that is not 0");
+      }
+    }
+  }
+  std::string_view name() const override { return "stamp"; }
+  Value options() const override { return options_value(options_); }
+  void load(Assets& assets) override { patch_ = assets.patch(options_.patch); }
+
+  Extent extent(const std::vector<UnitStroke>& strokes) const override {
+    // One unit a pixel: the reach in pixels is the reach in units, to a pixel.
+    constexpr float fine = 1e-3F;
+    const StampOptions scaled =
+        scale_lengths<StampOptions>(options_, 1.0F / (fine * options_.size));
+    return extent_of(strokes,
+                     static_cast<float>(normalshop::reach(scaled, patch_)) * fine * options_.size);
+  }
+
+ protected:
+  int copy_reach(float pixel) const override {
+    return normalshop::reach(scale_lengths<StampOptions>(options_, 1.0F / pixel), patch_);
+  }
+  Rect place(const OperatorInput& input, SlopeSpan details, MaskSpan coverage, Rect region,
+             const Vec2f& position) const override {
+    return stamp(details, coverage, region, patch_, position,
+                 scale_lengths<StampOptions>(options_, 1.0F / input.pixel));
+  }
+
+ private:
+  StampEditOptions options_;
+  Patch patch_;
+};
+
+}  // namespace
+
+OperatorType stamp_operator() {
+  return {"stamp", "Lays an RGBN patch on the surface", "Every point places one copy",
+          describe_fields<StampEditOptions>,
+          [](const FieldReader& options) -> std::unique_ptr<EditOperator> {
+            return std::make_unique<StampOperator>(options);
+          }};
+}
+
+}  // namespace normalshop

@@ -1,0 +1,185 @@
+#include "normalshop/core/error.h"
+#include "normalshop/document/edit.h"
+#include "normalshop/document/option_values.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr double smallest_extent = 1e-9;
+constexpr double largest_extent = 1e9;
+
+float extent_field(const FieldReader& reader, std::string_view name) {
+  return static_cast<float>(reader.required(name).number(smallest_extent, largest_extent));
+}
+
+Vec3f direction_field(const FieldReader& reader) {
+  const Vec3f v = reader.vec3();
+  if (v.norm() < 1e-12F) reader.fail("a direction [x, y, z] that is not all 0");
+  return v;
+}
+
+ViewSpec read_view(const FieldReader& reader) {
+  if (reader.value().text() != nullptr) {
+    return static_cast<NamedView>(reader.one_of(names_list<NamedView>()));
+  }
+  if (reader.value().object() == nullptr) {
+    reader.fail(join_names(names_list<NamedView>()) + ", or an object");
+  }
+  if (reader.has("facing")) {
+    reader.only({"facing", "width", "height"});
+    FacingView view;
+    view.point = reader.required("facing").vec3();
+    view.width = extent_field(reader, "width");
+    if (reader.has("height")) view.height = extent_field(reader, "height");
+    return view;
+  }
+  reader.only({"direction", "up", "center", "width", "height"});
+  FreeView view;
+  view.direction = direction_field(reader.required("direction"));
+  if (reader.has("up")) view.up = direction_field(reader.required("up"));
+  if (reader.has("center")) view.center = reader.required("center").vec3();
+  if (reader.has("width") || view.center) view.width = extent_field(reader, "width");
+  if (reader.has("height")) view.height = extent_field(reader, "height");
+  return view;
+}
+
+UnitPoint read_point(const FieldReader& reader) {
+  const std::vector<FieldReader> items = reader.items();
+  if (items.size() != 2 && items.size() != 3) reader.fail("[x, y] or [x, y, pressure]");
+  UnitPoint point;
+  point.position = {static_cast<float>(items[0].number()), static_cast<float>(items[1].number())};
+  if (items.size() == 3) point.pressure = static_cast<float>(items[2].number(0.0, 1.0));
+  return point;
+}
+
+std::vector<UnitStroke> read_strokes(const FieldReader& reader) {
+  std::vector<UnitStroke> strokes;
+  for (const FieldReader& item : reader.items()) {
+    UnitStroke stroke;
+    for (const FieldReader& point : item.items()) stroke.push_back(read_point(point));
+    if (stroke.empty()) item.fail("a list of at least one point");
+    strokes.push_back(std::move(stroke));
+  }
+  return strokes;
+}
+
+EffectiveAngles read_effective(const FieldReader& reader) {
+  reader.only({"full", "zero"});
+  EffectiveAngles angles;
+  if (reader.has("full")) angles.full = static_cast<float>(reader.required("full").number(0, 85));
+  if (reader.has("zero")) angles.zero = static_cast<float>(reader.required("zero").number(1, 86));
+  if (angles.full >= angles.zero) reader.fail("angles with full below zero");
+  return angles;
+}
+
+std::shared_ptr<const EditOperator> read_operator(const FieldReader& reader, Assets& assets) {
+  std::vector<std::string_view> names;
+  for (const OperatorType& type : operator_types()) names.push_back(type.name);
+  const OperatorType& type = operator_types()[reader.required("operator").one_of(names)];
+  static const Value no_options = Value::Object{};
+  const FieldReader options = reader.has("options")
+                                  ? reader.required("options")
+                                  : FieldReader(no_options, reader.path() + ".options");
+  std::shared_ptr<EditOperator> operation = type.make(options);
+  try {
+    operation->load(assets);
+  } catch (const Error& e) {
+    throw InvalidInput(options.path() + ": " + e.what());
+  }
+  return operation;
+}
+
+Edit read_edit(const FieldReader& reader, Assets& assets) {
+  reader.only({"operator", "view", "mode", "details", "strength", "effective", "options", "strokes",
+               "comment"});
+  Edit edit;
+  edit.path = reader.path();
+  edit.operation = read_operator(reader, assets);
+  edit.view = read_view(reader.required("view"));
+  if (reader.has("mode")) {
+    edit.mode = static_cast<EditMode>(reader.required("mode").one_of(names_list<EditMode>()));
+  }
+  if (reader.has("details")) {
+    edit.details =
+        static_cast<DetailsRule>(reader.required("details").one_of(names_list<DetailsRule>()));
+  }
+  if (reader.has("strength")) {
+    edit.strength = static_cast<float>(reader.required("strength").number(0.0, 1.0));
+  }
+  if (reader.has("effective")) edit.effective = read_effective(reader.required("effective"));
+  if (reader.has("strokes")) edit.strokes = read_strokes(reader.required("strokes"));
+  edit.operation->check_strokes(edit.strokes, reader.path() + ".strokes");
+  return edit;
+}
+
+Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z()}; }
+
+void add_extent(Value::Object& fields, float width, float height) {
+  if (width > 0.0F) fields.emplace_back("width", width);
+  if (height > 0.0F) fields.emplace_back("height", height);
+}
+
+Value view_value(const ViewSpec& spec) {
+  if (const auto* named = std::get_if<NamedView>(&spec)) return name_of(*named);
+  Value::Object fields;
+  if (const auto* free = std::get_if<FreeView>(&spec)) {
+    fields.emplace_back("direction", vec3_value(free->direction));
+    fields.emplace_back("up", vec3_value(free->up));
+    if (free->center) fields.emplace_back("center", vec3_value(*free->center));
+    add_extent(fields, free->width, free->height);
+  } else {
+    const auto& facing = std::get<FacingView>(spec);
+    fields.emplace_back("facing", vec3_value(facing.point));
+    add_extent(fields, facing.width, facing.height);
+  }
+  return fields;
+}
+
+Value strokes_value(const std::vector<UnitStroke>& strokes) {
+  Value::Array out;
+  for (const UnitStroke& stroke : strokes) {
+    Value::Array points;
+    for (const UnitPoint& p : stroke) {
+      Value::Array point{p.position.x(), p.position.y()};
+      if (p.pressure != 1.0F) point.emplace_back(p.pressure);
+      points.emplace_back(std::move(point));
+    }
+    out.emplace_back(std::move(points));
+  }
+  return out;
+}
+
+}  // namespace
+
+Recipe parse_recipe(std::string_view json, std::string_view file, Assets& assets) {
+  const Value root = parse_json(json, file);
+  const FieldReader reader(root, std::string(file) + ": ");
+  reader.only({"version", "edits", "comment"});
+  const FieldReader version = reader.required("version");
+  if (version.number() != 1.0) version.fail("1, the version that this program reads");
+  Recipe recipe;
+  for (const FieldReader& item : reader.required("edits").items()) {
+    recipe.edits.push_back(read_edit(item, assets));
+  }
+  return recipe;
+}
+
+Value to_value(const Recipe& recipe) {
+  Value::Array edits;
+  for (const Edit& edit : recipe.edits) {
+    Value::Object fields{
+        {"operator", edit.operation->name()},
+        {"view", view_value(edit.view)},
+        {"mode", name_of(edit.mode)},
+        {"details", name_of(edit.details)},
+        {"strength", edit.strength},
+        {"effective", Value::Object{{"full", edit.effective.full}, {"zero", edit.effective.zero}}},
+        {"options", edit.operation->options()}};
+    if (!edit.strokes.empty()) fields.emplace_back("strokes", strokes_value(edit.strokes));
+    edits.emplace_back(std::move(fields));
+  }
+  return Value::Object{{"version", 1}, {"edits", edits}};
+}
+
+}  // namespace normalshop

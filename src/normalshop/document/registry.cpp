@@ -1,0 +1,46 @@
+#include <algorithm>
+
+#include "normalshop/document/edit_operator.h"
+#include "normalshop/document/operators/operators.h"
+
+namespace normalshop {
+
+const std::vector<OperatorType>& operator_types() {
+  static const std::vector<OperatorType> types{pen_operator(), stamp_operator(), text_operator(),
+                                               smooth_operator(), sharpen_operator()};
+  return types;
+}
+
+const OperatorType* find_operator(std::string_view name) {
+  const auto& types = operator_types();
+  const auto found =
+      std::find_if(types.begin(), types.end(), [&](const auto& t) { return t.name == name; });
+  return found == types.end() ? nullptr : &*found;
+}
+
+Value describe_operators() {
+  Value::Array out;
+  for (const OperatorType& type : operator_types()) {
+    out.push_back(Value::Object{{"operator", type.name},
+                                {"summary", type.summary},
+                                {"strokes", type.strokes},
+                                {"options", type.fields()}});
+  }
+  return out;
+}
+
+Extent extent_of(const std::vector<UnitStroke>& strokes, float margin) {
+  Extent e;
+  for (const UnitStroke& stroke : strokes) {
+    for (const UnitPoint& p : stroke) {
+      e.low = e.low.cwiseMin(p.position);
+      e.high = e.high.cwiseMax(p.position);
+    }
+  }
+  if (e.empty()) return e;
+  e.low.array() -= margin;
+  e.high.array() += margin;
+  return e;
+}
+
+}  // namespace normalshop
