@@ -52,7 +52,7 @@ float highlight(const Vec3f& n, float n_l, const Prepared& light, const Surface&
 
 /// Narkowicz' fit of the ACES curve.
 float tone(float x) {
-  const float v = std::max(0.0F, 0.8F * x);
+  const float v = std::max(0.0F, 0.62F * x);
   return std::min(1.0F, v * (2.51F * v + 0.03F) / (v * (2.43F * v + 0.59F) + 0.14F));
 }
 
@@ -99,10 +99,10 @@ void for_each_pixel(const Rect& rect, const Body& body) {
 }  // namespace
 
 std::vector<Light> ShadeOptions::studio_lights(const Vec3f& key) {
-  return {{key, {3.1F, 2.95F, 2.75F}},
-          {{0.85F, 0.1F, 0.55F}, {0.55F, 0.62F, 0.75F}},
-          {{0.8F, 0.45F, -0.35F}, {2.0F, 2.5F, 3.2F}},
-          {{-0.9F, 0.1F, -0.4F}, {0.9F, 1.0F, 1.2F}}};
+  return {{key, {3.3F, 3.1F, 2.85F}},
+          {{0.85F, 0.1F, 0.55F}, {0.28F, 0.33F, 0.42F}},
+          {{0.8F, 0.45F, -0.35F}, {0.9F, 1.15F, 1.5F}},
+          {{-0.9F, 0.1F, -0.4F}, {0.35F, 0.4F, 0.5F}}};
 }
 
 void shade(ImageView<Vec3f> normals, ColorView albedo, MaskView occlusion, MaskView shadow,

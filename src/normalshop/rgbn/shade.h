@@ -21,8 +21,8 @@ struct Material {
 /// from above and bounce from below. `key` from elsewhere keeps the rest.
 struct ShadeOptions {
   std::vector<Light> lights = studio_lights({-0.55F, 0.6F, 0.75F});
-  Vec3f sky = {0.30F, 0.34F, 0.40F};
-  Vec3f ground = {0.13F, 0.11F, 0.10F};
+  Vec3f sky = {0.20F, 0.23F, 0.27F};
+  Vec3f ground = {0.07F, 0.06F, 0.055F};
   Material material;
   float exposure = 1.0F;
 
