@@ -1,0 +1,71 @@
+#include <system_error>
+
+#include "normalshop/core/error.h"
+#include "normalshop/io/atomic_file.h"
+#include "normalshop/io/model_source.h"
+
+namespace normalshop {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool leads_out(const fs::path& reference) {
+  return reference.is_absolute() || reference.empty() || *reference.begin() == "..";
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+}  // namespace
+
+Companions::Companions(const ModelSource& source, const fs::path& model_path,
+                       const std::map<std::size_t, NormalMapReference>& normal_maps)
+    : source_folder_(source.folder), folder_(folder_of(model_path)) {
+  for (const auto& [set, reference] : normal_maps) {
+    reserved_.push_back((folder_ / reference.file).lexically_normal());
+  }
+  reserved_.push_back(model_path.lexically_normal());
+}
+
+std::string Companions::place(const std::string& reference) const {
+  const fs::path normal = fs::path(reference).lexically_normal();
+  return leads_out(normal) ? normal.filename().string() : normal.generic_string();
+}
+
+bool Companions::reserved(const fs::path& target) const {
+  for (const fs::path& other : reserved_) {
+    if (other == target.lexically_normal()) return true;
+  }
+  return false;
+}
+
+std::string Companions::write(const std::string& reference, std::string_view bytes) {
+  const std::string name = place(reference);
+  const fs::path target = folder_ / name;
+  std::error_code error;
+  fs::create_directories(folder_of(target), error);
+  write_file(target, bytes);
+  result.files.push_back(target);
+  return name;
+}
+
+std::string Companions::copy(const std::string& reference) {
+  const auto known = done_.find(reference);
+  if (known != done_.end()) return known->second;
+  const std::string name = place(reference);
+  done_[reference] = name;
+  const fs::path from = source_folder_ / reference;
+  const fs::path target = folder_ / name;
+  std::error_code error;
+  if (name.empty() || reserved(target) || fs::equivalent(from, target, error)) return name;
+  if (!fs::is_regular_file(from, error)) {
+    result.notes.push_back("'" + from.string() +
+                           "' is missing, so it is not copied beside the model");
+    return name;
+  }
+  return write(reference, read_file(from));
+}
+
+}  // namespace normalshop

@@ -1,0 +1,88 @@
+#include "normalshop/io/model.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include <Eigen/Geometry>
+
+#include "normalshop/core/error.h"
+#include "normalshop/io/atomic_file.h"
+#include "normalshop/io/model_source.h"
+#include "normalshop/surface/vertex_normals.h"
+
+namespace normalshop {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+}  // namespace
+
+std::string file_safe_name(const std::string& wanted, const std::vector<TextureSet>& others) {
+  std::string name;
+  for (const char c : wanted.substr(0, 80)) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool safe = byte < 128 && (std::isalnum(byte) || c == '-' || c == '_' || c == '.');
+    name += safe ? c : '_';
+  }
+  if (name.empty() || name.front() == '.') name.insert(0, "set");
+  // Names that differ by case alone are one file on some systems.
+  const auto taken = [&](const std::string& candidate) {
+    return std::any_of(others.begin(), others.end(), [&](const TextureSet& other) {
+      return lower(other.name) == lower(candidate);
+    });
+  };
+  std::string unique = name;
+  for (int i = 2; taken(unique); ++i) unique = name + "_" + std::to_string(i);
+  return unique;
+}
+
+void fill_normals(Mesh& mesh) {
+  const auto missing = [](const Vec3f& n) { return n.isZero(); };
+  if (std::none_of(mesh.normals.begin(), mesh.normals.end(), missing)) return;
+  std::vector<Vec3f> given = std::move(mesh.normals);
+  compute_normals(mesh);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (!missing(given[i])) mesh.normals[i] = given[i];
+  }
+}
+
+Model read_model(const fs::path& path, const ModelReadOptions& options) {
+  const std::string extension = lower(path.extension().string());
+  if (extension != ".gltf" && extension != ".glb" && extension != ".obj") {
+    throw InvalidInput("'" + path.string() + "' is no model of a known kind; accepted are .gltf, " +
+                       ".glb and .obj");
+  }
+  const std::string text = read_file(path);
+  const auto bytes = std::as_bytes(std::span(text));
+  return extension == ".obj" ? parse_obj(bytes, path, options) : parse_gltf(bytes, path, options);
+}
+
+WrittenModel write_model(const Model& model, const fs::path& path,
+                         const std::map<std::size_t, NormalMapReference>& normal_maps) {
+  if (!model.source) throw InvalidInput("'" + path.string() + "': the model came from no file");
+  const ModelFormat format = model.source->format;
+  const std::string wanted = format == ModelFormat::Obj   ? ".obj"
+                             : format == ModelFormat::Glb ? ".glb"
+                                                          : ".gltf";
+  if (lower(path.extension().string()) != wanted) {
+    throw InvalidInput("cannot write '" + path.string() + "': the model is written back as " +
+                       wanted + ", the format it came in");
+  }
+  for (const auto& [set, reference] : normal_maps) {
+    if (set >= model.texture_sets.size() || reference.file.empty()) {
+      throw InvalidInput("cannot write '" + path.string() + "': there is no texture set " +
+                         std::to_string(set) + " with a map of that name");
+    }
+  }
+  return format == ModelFormat::Obj ? write_obj(model, path, normal_maps)
+                                    : write_gltf(model, path, normal_maps);
+}
+
+}  // namespace normalshop

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "normalshop/core/vec.h"
+#include "normalshop/surface/mesh.h"
+
+/// Model files: glTF 2.0 (.gltf, .glb) and Wavefront OBJ with MTL.
+namespace normalshop {
+
+/// An image that a material names. Exactly one of `path` and `bytes` is filled.
+struct MapSource {
+  std::string name;              ///< for messages
+  std::filesystem::path path;    ///< file beside the model; it may be missing
+  std::vector<std::byte> bytes;  ///< image embedded in the model file
+  std::string mime;              ///< "image/png", ...; empty when not stated
+  int uv_set = 0;
+  float scale = 1.0F;  ///< of a glTF normal texture: multiplies x and y of its normals
+};
+
+/// Triangles that share one atlas: all materials with the same normal image (or, where none has
+/// one, the same colour image) and the same UVs. Its index is Mesh::texture_sets' value.
+struct TextureSet {
+  std::string name;  ///< safe as a file name, different from the others'
+  std::optional<MapSource> normal_map;
+  std::optional<MapSource> albedo;
+  Vec3f albedo_factor = Vec3f::Ones();  ///< linear RGB, multiplies the albedo
+  std::vector<int> materials;           ///< of the file; -1 stands for "no material"
+};
+
+struct ModelSource;
+
+struct Model {
+  Mesh mesh;  ///< corners in the order of the file's faces; `tangents` as below
+  std::vector<TextureSet> texture_sets;
+  std::vector<std::string> notes;  ///< sentences: what was guessed or ignored
+  std::filesystem::path path;
+  bool has_normals = true;    ///< in the file for all faces; else computed where missing
+  bool has_tangents = false;  ///< in the file for all faces; else mesh.tangents is empty
+  /// The file's own content, for writing it back.
+  std::shared_ptr<const ModelSource> source;
+};
+
+struct ModelReadOptions {
+  /// The file's V runs the other way than its format says: v becomes 1 - v.
+  bool flip_v = false;
+  /// A file with more is refused.
+  std::size_t max_triangles = std::size_t{1} << 27;
+};
+
+/// By extension: .gltf, .glb, .obj. Throws IoError (missing, unreadable) or InvalidInput (not what
+/// it says, damaged, or needing something that is not supported).
+Model read_model(const std::filesystem::path& path, const ModelReadOptions& options = {});
+
+/// From memory. `path` stands for the file in messages; files that it refers to are looked for in
+/// its folder.
+Model parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                 const ModelReadOptions& options = {});
+Model parse_obj(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                const ModelReadOptions& options = {});
+
+/// A texture set's new normal map, as the written model refers to it.
+struct NormalMapReference {
+  std::string file;            ///< path relative to the written model, "/" between folders
+  bool scale_applied = false;  ///< the map holds MapSource::scale already: the model's becomes 1
+};
+
+struct WrittenModel {
+  std::vector<std::filesystem::path> files;  ///< everything that was written, the model first
+  std::vector<std::string> notes;
+};
+
+/// Writes the model with new normal maps. Everything else stays as the file has it: nodes, meshes,
+/// vertex order, faces, materials, extras. Buffers, materials and textures that the model refers to
+/// are copied beside it, except over files in `normal_maps`, which the caller writes. A model read
+/// with flip_v is written with v flipped in its UVs, so that it shows right elsewhere; its maps are
+/// not flipped. The extension must be the source's. Throws InvalidInput or IoError.
+WrittenModel write_model(const Model& model, const std::filesystem::path& path,
+                         const std::map<std::size_t, NormalMapReference>& normal_maps);
+
+}  // namespace normalshop
