@@ -1,12 +1,17 @@
 #include <cmath>
 #include <limits>
 
+#include "support/data.h"
+#include "support/gltf_corners.h"
 #include "support/meshes.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/random.h"
+#include "normalshop/surface/seams.h"
+#include "normalshop/surface/tangents.h"
+#include "normalshop/surface/texel_density.h"
 #include "normalshop/surface/texel_map.h"
 
 namespace normalshop {
@@ -193,6 +198,56 @@ TEST(TexelMap, ThreadsDoNotMatter) {
   for (std::size_t i = 0; i < all.gutter().size(); ++i) {
     EXPECT_EQ(all.gutter()[i].texel, single.gutter()[i].texel);
     EXPECT_EQ(all.gutter()[i].source.b1, single.gutter()[i].source.b1);
+  }
+}
+
+TEST(TexelMap, RealHead) {
+  const auto file = test::data_file("lee_perry_smith/LeePerrySmith.glb");
+  if (!file) GTEST_SKIP() << "needs lee_perry_smith of the real data";
+  const Mesh mesh = test::load_gltf_corners(*file);
+  const TexelMap map(mesh, 0, 2048, 2048);
+  const TexelUse use = texel_use(map);
+  EXPECT_NEAR(use.coverage, 0.92, 0.01);
+  EXPECT_LT(use.overlap, 0.001);
+  EXPECT_LT(worst_centre_error(mesh, map), 0.02);
+  for (const GutterTexel& g : map.gutter()) {
+    EXPECT_EQ(map.owner().data()[g.texel], no_triangle);
+    EXPECT_GE(std::min({g.source.b1, g.source.b2, 1.0F - g.source.b1 - g.source.b2}), -1e-6F);
+  }
+}
+
+TEST(TexelMap, DamagedMeshesDoNoHarm) {
+  Random random(99);
+  const float strange[] = {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F, 1e-40F, 0.5F,
+                           std::numeric_limits<float>::infinity()};
+  for (int round = 0; round < 60; ++round) {
+    Mesh mesh;
+    mesh.texture_set_names = {"map"};
+    const auto number = [&] {
+      return random.next() % 40 == 0 ? strange[random.next() % 6] : random.uniform(-0.3F, 1.3F);
+    };
+    for (int i = 0; i < 12; ++i) mesh.positions.emplace_back(number(), number(), number());
+    for (int t = 0; t < 40; ++t) {
+      mesh.triangles.emplace_back(random.next() % 12, random.next() % 12, random.next() % 12);
+      mesh.texture_sets.push_back(random.next() % 8 == 0 ? 1 : 0);
+      for (int k = 0; k < 3; ++k) {
+        mesh.uvs.emplace_back(std::round(number() * 8.0F) / 8.0F, number());
+        mesh.normals.emplace_back(number(), number(), number());
+      }
+    }
+    compute_tangents(mesh);
+    const TexelMap map(mesh, 0, 37, 23, 6);
+    for (const GutterTexel& g : map.gutter()) {
+      EXPECT_TRUE(std::isfinite(g.source.b1) && std::isfinite(g.source.b2));
+      EXPECT_TRUE(std::isfinite(g.owner_b1) && std::isfinite(g.owner_b2));
+      EXPECT_LT(g.source.triangle, 40U);
+      EXPECT_EQ(mesh.texture_sets[g.source.triangle], 0U);
+    }
+    for (const SharedTexel& s : map.shared()) {
+      EXPECT_NE(map.owner().data()[s.texel], s.triangle);
+      EXPECT_NE(map.owner().data()[s.texel], no_triangle);
+    }
+    EXPECT_EQ(find_seams(mesh).chart.size(), 40U);
   }
 }
 

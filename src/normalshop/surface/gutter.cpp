@@ -230,6 +230,9 @@ class Gutter {
     g.owner_b1 = static_cast<float>(foot[1] + share * (w[1] - foot[1]));
     g.owner_b2 = static_cast<float>(foot[2] + share * (w[2] - foot[2]));
     g.source = walk(mesh_, topology_, way_out(b, w, t));
+    if (!std::isfinite(g.source.b1 + g.source.b2)) {  // positions that are no numbers
+      g.source = {triangle, static_cast<float>(foot[1]), static_cast<float>(foot[2])};
+    }
     return g;
   }
 
