@@ -64,6 +64,20 @@ BENCHMARK(texel_map)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
+/// One core: the frame of a point, a map's normal to object space and back.
+void frames(benchmark::State& state) {
+  Mesh mesh = test::uv_sphere(188, 47);
+  compute_tangents(mesh);
+  const Vec3f normal = Vec3f(0.2F, -0.1F, 1.0F).normalized();
+  std::uint32_t triangle = 0;
+  for (auto _ : state) {
+    const TangentFrame frame = frame_at(mesh, {triangle, 0.3F, 0.4F}, NormalSpace::Tangent);
+    benchmark::DoNotOptimize(frame.map_normal(frame.object_normal(normal)));
+    if (++triangle == mesh.triangle_count()) triangle = 0;
+  }
+}
+BENCHMARK(frames);
+
 void topology(benchmark::State& state) {
   const Mesh& mesh = mesh_of(state);
   for (auto _ : state) benchmark::DoNotOptimize(make_topology(mesh));

@@ -1,5 +1,6 @@
 #include "normalshop/surface/frames.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -32,7 +33,7 @@ Vec3d interpolated_normal(const Mesh& mesh, const SurfacePoint& point) {
   const auto [a, b, c] = corners_of(point);
   const Vec3d n = interpolate<Vec3d>(mesh.normals[a].cast<double>(), mesh.normals[b].cast<double>(),
                                      mesh.normals[c].cast<double>(), point.b1, point.b2);
-  return n.norm() > min_frame_size ? n : geometric_normal(mesh, point);
+  return n.squaredNorm() > min_frame_size * min_frame_size ? n : geometric_normal(mesh, point);
 }
 
 Mat3f orthonormal_frame(const Vec3d& unit_normal) {
@@ -93,8 +94,8 @@ TangentFrame frame_at(const Mesh& mesh, const SurfacePoint& point, NormalSpace s
                                      tc.head<3>().cast<double>(), point.b1, point.b2);
   const Vec3d n = interpolated_normal(mesh, point);
   const Vec3d bitangent = sign * n.cross(t);
-  const double size = min_frame_size * n.norm();
-  if (!(bitangent.norm() > size && bitangent.norm() > size * t.norm())) {
+  const double least = min_frame_size * min_frame_size * n.squaredNorm();
+  if (!(bitangent.squaredNorm() > least * std::max(1.0, t.squaredNorm()))) {
     frame.to_object = orthonormal_frame(n.normalized());
     return frame;
   }
