@@ -36,7 +36,6 @@ class PolylineField {
  public:
   PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile, float height,
                 FieldCoverage coverage);
-  ~PolylineField();
   PolylineField(const PolylineField&) = delete;
   PolylineField& operator=(const PolylineField&) = delete;
 
@@ -50,15 +49,44 @@ class PolylineField {
   void render(const Rect& region, int grid, const Write& write) const;
 
  private:
-  struct Segment;
-  struct Shape;
+  static constexpr int tile_size = 64;
+  /// Rows that share a list of the segments that may cross them.
+  static constexpr float band_rows = 8.0F;
   struct Nearest;
   struct Along;
-  struct Bins;
   using List = std::vector<std::uint32_t>;
+
+  struct Segment {
+    Vec2f a, b;
+    Vec2f direction;
+    float length;
+    float half_width, half_width_rate;
+    float fade, fade_rate;
+    Vec2f start_tangent, end_tangent;  ///< mean direction at the joints
+    bool start_cap = false;
+    bool end_cap = false;
+    std::uint32_t shape = 0;
+    std::ptrdiff_t previous = 0;  ///< from this to its neighbours in the list of segments
+    std::ptrdiff_t next = 0;
+  };
+
+  struct Shape {
+    bool closed = false;
+    float largest_half_width = 0.0F;
+    float orientation = 1.0F;  ///< 1: inside is to the left
+    float top = 0.0F;
+    std::vector<List> bands;  ///< of segments by rows, for winding numbers
+  };
+
+  /// The segments that may matter in each tile of a region, in order.
+  struct Bins {
+    int columns = 0;
+    std::vector<List> tiles;
+  };
 
   void add(const FieldShape& shape);
   void add_contour(const std::vector<FieldVertex>& contour, bool closed);
+  void fill_bands(Shape& shape, std::size_t first, float bottom) const;
   void grow_bounds(const Segment& segment, float half_width);
   Bins bin(const Rect& region) const;
   void render_tile(const Rect& tile, const List& segments, int grid, const Write& write) const;

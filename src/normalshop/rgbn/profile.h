@@ -24,13 +24,13 @@ constexpr auto names_of(ProfileShape) {
 /// are made to comply: a smooth ramp (open) or a constant (closed) is subtracted.
 class Profile {
  public:
-  /// Throws InvalidInput for Step with closed = false, and for Custom when the curve is empty or
-  /// has points outside [-1, 1].
   struct Options {
     ProfileShape shape = ProfileShape::Bump;
     bool closed = false;
     Curve curve;  ///< of Custom: points (u, height)
   };
+  /// Throws InvalidInput for Step with closed = false, and for Custom when the curve is empty or
+  /// has points outside [-1, 1].
   explicit Profile(const Options& options);
 
   struct Value {

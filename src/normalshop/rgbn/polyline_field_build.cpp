@@ -1,0 +1,154 @@
+#include <cmath>
+#include <limits>
+
+#include "normalshop/rgbn/polyline_field.h"
+
+// From vertices to segments, and the lists that find them again.
+namespace normalshop {
+
+namespace {
+
+float cross(const Vec2f& a, const Vec2f& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+int clamped_int(float x, int low, int high) {
+  return static_cast<int>(
+      std::clamp(x, static_cast<float>(low), static_cast<float>(std::max(low, high))));
+}
+
+}  // namespace
+
+PolylineField::PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile,
+                             float height, FieldCoverage coverage)
+    : profile_(profile), height_(height), coverage_(coverage) {
+  for (const FieldShape& shape : shapes) add(shape);
+}
+
+void PolylineField::add(const FieldShape& source) {
+  const std::size_t first = segments_.size();
+  shapes_.emplace_back();
+  shapes_.back().closed = source.closed;
+  for (const auto& contour : source.contours) add_contour(contour, source.closed);
+  Shape& shape = shapes_.back();
+  double area = 0.0;
+  float bottom = -std::numeric_limits<float>::infinity();
+  shape.top = std::numeric_limits<float>::infinity();
+  for (std::size_t i = first; i < segments_.size(); ++i) {
+    const Segment& s = segments_[i];
+    const float end_width = s.half_width + s.length * s.half_width_rate;
+    shape.largest_half_width = std::max({shape.largest_half_width, s.half_width, end_width});
+    shape.top = std::min({shape.top, s.a.y(), s.b.y()});
+    bottom = std::max({bottom, s.a.y(), s.b.y()});
+    const Vec2f from = s.a - segments_[first].a;
+    const Vec2f to = s.b - segments_[first].a;
+    area += static_cast<double>(cross(from, to));
+  }
+  for (std::size_t i = first; i < segments_.size(); ++i) {
+    grow_bounds(segments_[i], shape.largest_half_width);
+  }
+  // With y down, a positive sum means clockwise as seen: inside is to the right.
+  shape.orientation = area > 0.0 ? -1.0F : 1.0F;
+  if (shape.closed && first < segments_.size()) fill_bands(shape, first, bottom);
+}
+
+void PolylineField::fill_bands(Shape& shape, std::size_t first, float bottom) const {
+  const int bands = 1 + clamped_int((bottom - shape.top) / band_rows, 0, 1 << 20);
+  shape.bands.resize(static_cast<std::size_t>(bands));
+  for (std::size_t i = first; i < segments_.size(); ++i) {
+    const float y0 = std::min(segments_[i].a.y(), segments_[i].b.y());
+    const float y1 = std::max(segments_[i].a.y(), segments_[i].b.y());
+    const int b0 = clamped_int(std::floor((y0 - 0.01F - shape.top) / band_rows), 0, bands - 1);
+    const int b1 = clamped_int(std::floor((y1 + 0.01F - shape.top) / band_rows), 0, bands - 1);
+    for (int b = b0; b <= b1; ++b) {
+      shape.bands[static_cast<std::size_t>(b)].push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+}
+
+void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool closed) {
+  std::vector<FieldVertex> v;
+  for (const FieldVertex& vertex : contour) {
+    if (v.empty() || (vertex.position - v.back().position).norm() > 1e-4F) v.push_back(vertex);
+  }
+  while (closed && v.size() > 1 && (v.front().position - v.back().position).norm() <= 1e-4F) {
+    v.pop_back();
+  }
+  if (v.empty()) return;
+  const bool ring = closed && v.size() > 1;
+  const std::size_t count = ring ? v.size() : std::max<std::size_t>(1, v.size() - 1);
+  const std::size_t first = segments_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const FieldVertex& a = v[i];
+    const FieldVertex& b = v[(i + 1) % v.size()];
+    Segment s{};
+    s.a = a.position;
+    s.b = b.position;
+    s.length = (b.position - a.position).norm();
+    s.direction = s.length > 0.0F ? Vec2f((b.position - a.position) / s.length) : Vec2f(1.0F, 0.0F);
+    s.half_width = a.half_width;
+    s.fade = a.fade;
+    if (s.length > 0.0F) {
+      s.half_width_rate = (b.half_width - a.half_width) / s.length;
+      s.fade_rate = (b.fade - a.fade) / s.length;
+    }
+    s.start_tangent = s.end_tangent = s.direction;
+    s.shape = static_cast<std::uint32_t>(shapes_.size() - 1);
+    segments_.push_back(s);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Segment& s = segments_[first + i];
+    Segment& next = segments_[first + (i + 1) % count];
+    s.end_cap = !ring && i + 1 == count;
+    s.next = s.end_cap
+                 ? 0
+                 : static_cast<std::ptrdiff_t>((i + 1) % count) - static_cast<std::ptrdiff_t>(i);
+    next.previous = s.end_cap ? next.previous : -s.next;
+    if (i == 0) s.start_cap = !ring;
+    if (s.end_cap) continue;
+    const Vec2f mean = 0.5F * (s.direction + next.direction);
+    // At a hairpin there is no mean direction: both keep their own.
+    if (mean.norm() > 0.1F) s.end_tangent = next.start_tangent = mean.normalized();
+  }
+}
+
+void PolylineField::grow_bounds(const Segment& s, float half_width) {
+  const float margin = half_width + 1.0F;
+  constexpr int limit = 1 << 24;
+  const Vec2f low = s.a.cwiseMin(s.b).array() - margin;
+  const Vec2f high = s.a.cwiseMax(s.b).array() + margin;
+  bounds_ = unite(bounds_, {clamped_int(std::floor(low.x()), -limit, limit),
+                            clamped_int(std::floor(low.y()), -limit, limit),
+                            clamped_int(std::ceil(high.x()), -limit, limit) + 1,
+                            clamped_int(std::ceil(high.y()), -limit, limit) + 1});
+}
+
+PolylineField::Bins PolylineField::bin(const Rect& region) const {
+  Bins bins;
+  bins.columns = (region.width() + tile_size - 1) / tile_size;
+  const int rows = (region.height() + tile_size - 1) / tile_size;
+  bins.tiles.resize(static_cast<std::size_t>(bins.columns) * static_cast<std::size_t>(rows));
+  const Vec2f origin(static_cast<float>(region.x0), static_cast<float>(region.y0));
+  constexpr float size = tile_size;
+  const float radius = 0.5F * size * std::sqrt(2.0F);
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const Segment& s = segments_[i];
+    const float width = shapes_[s.shape].largest_half_width + 1.0F;
+    const Vec2f low = (s.a.cwiseMin(s.b).array() - width - origin.array()) / size;
+    const Vec2f high = (s.a.cwiseMax(s.b).array() + width - origin.array()) / size;
+    if (high.x() < 0.0F || high.y() < 0.0F) continue;
+    const int x1 = clamped_int(high.x(), 0, bins.columns - 1);
+    const int y1 = clamped_int(high.y(), 0, rows - 1);
+    for (int y = clamped_int(std::floor(low.y()), 0, rows); y <= y1; ++y) {
+      for (int x = clamped_int(std::floor(low.x()), 0, bins.columns); x <= x1; ++x) {
+        const Vec2f center =
+            origin + size * Vec2f(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+        const float along = std::clamp((center - s.a).dot(s.direction), 0.0F, s.length);
+        if ((center - s.a - along * s.direction).norm() > radius + width + 1.0F) continue;
+        bins.tiles[static_cast<std::size_t>(y * bins.columns + x)].push_back(
+            static_cast<std::uint32_t>(i));
+      }
+    }
+  }
+  return bins;
+}
+
+}  // namespace normalshop
