@@ -13,8 +13,8 @@ namespace normalshop {
 
 namespace {
 
-constexpr int band_rows = 16;
-constexpr int max_bands = 64;
+constexpr int band_rows = 64;
+constexpr int max_bands = 16;
 
 /// First rows of the bands that are read: all of a small image, evenly spread ones of a large.
 std::vector<int> bands_of(const RawImage& codes) {
@@ -115,9 +115,13 @@ bool has_signed_floats(const CodeCounts& counts) {
   return counts.sum[0] / n < 0.1 && counts.sum[1] / n < 0.1;
 }
 
-bool has_two_channels(const RawImage& codes, const CodeCounts& counts) {
+/// A constant blue that no normal towards the viewer has. With a constant 255 the three channels
+/// still give a direction, and renderers take that one.
+bool has_two_channels(const RawImage& codes, const CodeCounts& counts,
+                      const NormalConvention& convention) {
   if (codes.channels() == 2) return true;
-  return counts.min[2] == counts.max[2] &&
+  const CodeRange range = code_range(codes.type(), convention);
+  return counts.min[2] == counts.max[2] && counts.min[2] * range.scale + range.offset < 0.1F &&
          (counts.min[0] != counts.max[0] || counts.min[1] != counts.max[1]);
 }
 
@@ -218,8 +222,8 @@ std::vector<Vec2f> curl_halves(const Slopes& slopes, std::size_t band, int scale
   return cells;
 }
 
-/// log of (curl with q negated / curl with q). Cells far steeper than the mean (borders of charts)
-/// weigh no more than their share: noise there would drown the rest.
+/// log of (curl with q negated / curl with q), less the part that both have. Cells far steeper than
+/// the mean (borders of charts) weigh no more than their share: noise there would drown the rest.
 double log_curl_ratio(const Slopes& slopes, int scale) {
   std::vector<std::vector<Vec2f>> bands(slopes.rows.size());
   for_each_band(bands.size(), [&](std::size_t i) { bands[i] = curl_halves(slopes, i, scale); });
@@ -229,7 +233,7 @@ double log_curl_ratio(const Slopes& slopes, int scale) {
     for (const Vec2f& cell : cells) energy += static_cast<double>(cell.squaredNorm());
     count += cells.size();
   }
-  if (count < 64 || !(energy > 0.0)) return 0.0;
+  if (count < 256 || !(energy > 0.0)) return 0.0;
   const double mean = energy / static_cast<double>(count);
   double as_is = 0.0;
   double negated = 0.0;
@@ -238,8 +242,9 @@ double log_curl_ratio(const Slopes& slopes, int scale) {
       const auto p = static_cast<double>(cell.x());
       const auto q = static_cast<double>(cell.y());
       const double weight = 1.0 / (p * p + q * q + mean);
-      as_is += weight * (p - q) * (p - q);
-      negated += weight * (p + q) * (p + q);
+      // (p -+ q)^2 = (|p| - |q|)^2 + 2 (|pq| -+ pq): the first part is the same for both signs.
+      as_is += weight * (std::abs(p * q) - p * q);
+      negated += weight * (std::abs(p * q) + p * q);
     }
   }
   const double floor = 1e-6 * (as_is + negated);
@@ -249,7 +254,7 @@ double log_curl_ratio(const Slopes& slopes, int scale) {
 /// Coarser scales are freer of noise from coding and compression: the clearest one counts.
 double clearest_log_ratio(const Slopes& slopes) {
   double best = 0.0;
-  for (const int scale : {1, 2, 4, 8}) {
+  for (const int scale : {1, 2, 4, 8, 16}) {
     const double ratio = log_curl_ratio(slopes, scale);
     if (std::abs(ratio) > std::abs(best)) best = ratio;
   }
@@ -305,7 +310,7 @@ ConventionGuess guess_convention(const RawImage& codes) {
   const CodeCounts counts = count_codes(codes);
   const bool floats = codes.type() == CodeType::F32;
   guess.convention.signed_float = floats && has_signed_floats(counts);
-  guess.convention.two_channel = has_two_channels(codes, counts);
+  guess.convention.two_channel = has_two_channels(codes, counts, guess.convention);
   guess.convention.centred_code = !floats && is_centred(counts);
   Slopes slopes;
   const Directions directions = read_directions(codes, guess.convention, slopes);

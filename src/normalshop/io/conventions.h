@@ -27,7 +27,8 @@ struct ConventionGuess {
 };
 
 /// Space from the spread of directions (tangent: nearly all towards +z; object: all over the
-/// sphere), green from the curl, two channels from a constant or missing blue, the code of zero
+/// sphere), green from the curl, two
+/// channels from a missing blue or one that is constant and no normal's, the code of zero
 /// from the code of flat areas, signed floats from negative values. Reads at most about 1,024 rows.
 /// Needs 2 to 4 channels; throws InvalidInput otherwise.
 ConventionGuess guess_convention(const RawImage& codes);

@@ -1,0 +1,85 @@
+#include "normalshop/io/export_maps.h"
+
+#include "normalshop/core/error.h"
+#include "normalshop/io/image_file.h"
+#include "normalshop/surface/convert_space.h"
+
+namespace normalshop {
+
+namespace {
+
+NormalConvention target_convention(const NormalConvention& own,
+                                   const std::optional<ExportPreset>& preset) {
+  NormalConvention to = own;
+  if (!preset) return to;
+  to.space = *preset == ExportPreset::Object ? NormalSpace::Object : NormalSpace::Tangent;
+  to.green_down = *preset == ExportPreset::DirectX;
+  const bool renders_two = *preset != ExportPreset::Gltf && to.space == NormalSpace::Tangent;
+  if (!renders_two) to.two_channel = false;  // glTF and object space need all three
+  return to;
+}
+
+/// World and object space are one here: meshes are loaded with their node transforms applied.
+bool same_space(NormalSpace a, NormalSpace b) {
+  return (a == NormalSpace::Tangent) == (b == NormalSpace::Tangent);
+}
+
+std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType type) {
+  const char* extension = opened.sets[set].tiff   ? "_normal.tif"
+                          : type == CodeType::F32 ? "_normal.exr"
+                                                  : "_normal.png";
+  return opened.model.texture_sets[set].name + extension;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw IoError(folder.string() + ": cannot create this folder: " +
+                  (error ? error.message() : std::string("a file of that name exists")));
+  }
+}
+
+}  // namespace
+
+RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportOptions& options) {
+  const StorageSet& stored = opened.document.storage().sets[set];
+  const NormalConvention& own = stored.normals.convention();
+  const NormalConvention to = target_convention(own, options.preset);
+  const CodeType type = options.type.value_or(opened.sets[set].type);
+  if (same_space(own.space, to.space)) return stored.normals.encode(type, to);
+  return convert_space(opened.document.mesh(), stored.texels, stored.normals, to, type);
+}
+
+std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
+                                                   const std::filesystem::path& folder,
+                                                   const ExportOptions& options,
+                                                   std::vector<std::string>& notes) {
+  make_folder(folder);
+  std::error_code error;
+  const std::filesystem::path own_folder = opened.model.path.parent_path();
+  if (std::filesystem::equivalent(folder, own_folder.empty() ? "." : own_folder, error)) {
+    throw InvalidInput(folder.string() +
+                       ": this is the model's own folder; choose another one, so that nothing of "
+                       "yours is overwritten");
+  }
+  std::vector<std::filesystem::path> files;
+  std::map<std::size_t, NormalMapReference> references;
+  for (std::size_t i = 0; i < opened.sets.size(); ++i) {
+    const CodeType type = options.type.value_or(opened.sets[i].type);
+    const std::string name = map_name(opened, i, type);
+    write_image(folder / name, export_map(opened, i, options));
+    files.push_back(folder / name);
+    references[i] = {name, opened.sets[i].scale_applied};
+    if (type == CodeType::F32 && opened.model.path.extension() != ".obj") {
+      notes.push_back(name + ": glTF viewers read only PNG and JPEG; use --bits 8 or 16 for them");
+    }
+  }
+  const WrittenModel written =
+      write_model(opened.model, folder / opened.model.path.filename(), references);
+  files.insert(files.end(), written.files.begin(), written.files.end());
+  notes.insert(notes.end(), written.notes.begin(), written.notes.end());
+  return files;
+}
+
+}  // namespace normalshop

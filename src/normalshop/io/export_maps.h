@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "normalshop/io/open_document.h"
+
+namespace normalshop {
+
+/// Conventions of what reads the maps. Gltf and OpenGl: tangent space, green up. DirectX: tangent
+/// space, green down. Object: object space.
+enum class ExportPreset { Gltf, OpenGl, DirectX, Object };
+constexpr auto names_of(ExportPreset) {
+  return std::array<std::string_view, 4>{"gltf", "opengl", "directx", "object"};
+}
+
+struct ExportOptions {
+  /// None: the conventions that the map came with.
+  std::optional<ExportPreset> preset;
+  std::optional<CodeType> type;  ///< none: that of the imported map
+};
+
+/// The texture set's map as it would be written. With the imported conventions, type and size every
+/// unedited texel keeps its imported code.
+RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportOptions& options);
+
+/// Writes `<texture set>_normal.png` (.exr for 32 bits, .tif where the input was TIFF) for every
+/// texture set and the model that uses them into `folder`, which is created. All files are checked
+/// and complete before they take their names. Returns the files, maps first, then the model's.
+std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
+                                                   const std::filesystem::path& folder,
+                                                   const ExportOptions& options,
+                                                   std::vector<std::string>& notes);
+
+}  // namespace normalshop

@@ -1,0 +1,58 @@
+#include "normalshop/io/file_assets.h"
+
+#include "normalshop/core/error.h"
+#include "normalshop/core/normal_map.h"
+#include "normalshop/core/slope.h"
+#include "normalshop/io/conventions.h"
+#include "normalshop/io/image_file.h"
+#include "normalshop/io/outline_font.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr int largest_patch = 8192;
+
+float full_code(CodeType type) {
+  return type == CodeType::U8 ? 255.0F : type == CodeType::U16 ? 65535.0F : 1.0F;
+}
+
+}  // namespace
+
+Patch FileAssets::patch(const std::string& file) {
+  const std::filesystem::path path = folder_ / file;
+  RawImage codes = read_image(path);
+  if (codes.width() > largest_patch || codes.height() > largest_patch) {
+    throw InvalidInput(path.string() + ": a patch may have at most 8192 x 8192 pixels");
+  }
+  if (codes.channels() < 3) {
+    throw InvalidInput(path.string() + ": a patch needs red, green and blue; this file has " +
+                       std::to_string(codes.channels()) + " channels");
+  }
+  const bool alpha = codes.channels() == 4;
+  NormalConvention convention = guess_convention(codes).convention;
+  convention.space = NormalSpace::Tangent;
+  convention.green_down = false;
+  const NormalMap map(std::move(codes), convention);
+  Patch patch;
+  patch.slopes.resize(map.width(), map.height());
+  if (alpha) patch.opacity.resize(map.width(), map.height());
+  const float opaque = full_code(map.codes().type());
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      const Vec3f n = map.normal(x, y);
+      patch.slopes(x, y) = n.isZero() ? Vec2f(0.0F, 0.0F) : slope_from_normal(n);
+      if (alpha) patch.opacity(x, y) = map.codes().code(x, y, 3) / opaque;
+    }
+  }
+  return patch;
+}
+
+Outline FileAssets::text(const std::string& text, const std::string& font) {
+  // A name with a folder or an extension is a file; else the system's fonts are searched.
+  const std::filesystem::path name(font);
+  const bool is_file = name.has_parent_path() || name.has_extension();
+  return text_outlines(text, is_file ? folder_ / name : name);
+}
+
+}  // namespace normalshop

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "normalshop/document/assets.h"
+
+namespace normalshop {
+
+/// Patches and fonts from files; relative names start in `folder`.
+class FileAssets : public Assets {
+ public:
+  explicit FileAssets(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  Patch patch(const std::string& file) override;
+  Outline text(const std::string& text, const std::string& font) override;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace normalshop

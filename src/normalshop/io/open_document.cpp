@@ -1,0 +1,186 @@
+#include "normalshop/io/open_document.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "normalshop/core/error.h"
+#include "normalshop/core/slope.h"
+#include "normalshop/io/image_file.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr int default_size = 2048;
+constexpr int largest_size = 16384;
+
+/// Splits "SET=FILE" and finds the set; a plain FILE needs a model with one set.
+std::vector<std::optional<MapSource>> given_maps(const std::vector<std::string>& arguments,
+                                                 const Model& model, const char* flag) {
+  std::vector<std::optional<MapSource>> out(model.texture_sets.size());
+  std::string names;
+  for (const TextureSet& set : model.texture_sets) names += (names.empty() ? "" : ", ") + set.name;
+  for (const std::string& argument : arguments) {
+    std::size_t index = 0;
+    std::string file = argument;
+    const std::size_t equals = argument.find('=');
+    const auto named = [&](const TextureSet& s) { return s.name == argument.substr(0, equals); };
+    const auto found = equals == std::string::npos ? model.texture_sets.end()
+                                                   : std::find_if(model.texture_sets.begin(),
+                                                                  model.texture_sets.end(), named);
+    if (found != model.texture_sets.end()) {
+      index = static_cast<std::size_t>(found - model.texture_sets.begin());
+      file = argument.substr(equals + 1);
+    } else if (model.texture_sets.size() != 1) {
+      throw InvalidInput(std::string(flag) + " " + argument + ": the model has " +
+                         std::to_string(model.texture_sets.size()) +
+                         " texture sets; write SET=FILE with one of: " + names);
+    }
+    if (out[index]) {
+      throw InvalidInput(std::string(flag) + ": given twice for the texture set " +
+                         model.texture_sets[index].name);
+    }
+    out[index] = MapSource{};
+    out[index]->name = file;
+    out[index]->path = file;
+  }
+  return out;
+}
+
+RawImage read_source(const MapSource& source) {
+  return source.bytes.empty() ? read_image(source.path) : read_image(source.bytes, source.name);
+}
+
+/// x and y of every normal times the model's scale (glTF normalTexture.scale).
+NormalMap apply_scale(const NormalMap& map, float scale) {
+  NormalMap scaled = map;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      Vec3f n = map.normal(x, y);
+      n.head<2>() *= scale;
+      if (!n.isZero()) scaled.set_normal(x, y, n.normalized());
+    }
+  }
+  return {scaled.encode(), map.convention()};
+}
+
+NormalConvention choose_convention(const ConventionGuess& guess, const OpenOptions& options) {
+  NormalConvention convention = guess.convention;
+  if (options.space) convention.space = *options.space;
+  if (options.green_down) convention.green_down = *options.green_down;
+  if (convention.space != NormalSpace::Tangent) convention.two_channel = false;
+  return convention;
+}
+
+NormalMap fit_size(NormalMap map, int size) {
+  const int largest = std::max(map.width(), map.height());
+  if (size == 0 || size == largest) return map;
+  const auto scaled = [&](int side) {
+    return std::max(1, static_cast<int>(std::lround(double(side) * size / largest)));
+  };
+  // Resampled slopes need more steps than 8 bits have.
+  const CodeType type = map.codes().type() == CodeType::F32 ? CodeType::F32 : CodeType::U16;
+  return resize(map, scaled(map.width()), scaled(map.height()), type);
+}
+
+NormalMap open_normals(const MapSource& source, const std::string& set_name,
+                       const OpenOptions& options, OpenedDocument& opened, OpenedSet& info) {
+  RawImage codes = read_source(source);
+  info.normal_map = source.name.empty() ? source.path.string() : source.name;
+  info.type = codes.type();
+  const std::string extension = source.path.extension().string();
+  info.tiff = extension == ".tif" || extension == ".tiff";
+  info.imported_width = codes.width();
+  info.imported_height = codes.height();
+  info.guess = guess_convention(codes);
+  const NormalConvention convention = choose_convention(*info.guess, options);
+  opened.notes.push_back(set_name + ": " + info.guess->sentence);
+  NormalMap map(std::move(codes), convention);
+  if (source.scale != 1.0F) {
+    map = apply_scale(map, source.scale);
+    info.scale_applied = true;
+    opened.notes.push_back(set_name + ": the model scales its normals by " +
+                           std::to_string(source.scale) + "; this was multiplied into the map");
+  }
+  return fit_size(std::move(map), options.size);
+}
+
+Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& normals,
+                         const std::optional<MapSource>& albedo, const OpenOptions& options,
+                         OpenedDocument& opened, OpenedSet& info) {
+  Document::Maps maps;
+  if (albedo) {
+    RawImage codes = read_source(*albedo);
+    maps.albedo = ColorMap(std::move(codes), set.albedo_factor);
+  } else {
+    maps.albedo = ColorMap(set.albedo_factor);
+  }
+  if (normals) {
+    maps.normals = open_normals(*normals, set.name, options, opened, info);
+    return maps;
+  }
+  const RawImage& color = maps.albedo.codes();
+  int width = color.empty() ? default_size : color.width();
+  int height = color.empty() ? default_size : color.height();
+  if (options.size > 0) {
+    const double factor = double(options.size) / std::max(width, height);
+    width = std::max(1, static_cast<int>(std::lround(width * factor)));
+    height = std::max(1, static_cast<int>(std::lround(height * factor)));
+  }
+  info.type = CodeType::U16;
+  info.imported_width = width;
+  info.imported_height = height;
+  maps.normals = flat_normal_map(width, height, CodeType::U16);
+  opened.notes.push_back(set.name + ": no normal map; starting from a flat one of " +
+                         std::to_string(width) + " x " + std::to_string(height) + ", 16 bit");
+  return maps;
+}
+
+/// The user's choice, else the model's; a model's colour map that is missing is only noted.
+std::optional<MapSource> choose(const std::optional<MapSource>& given,
+                                const std::optional<MapSource>& own) {
+  return given ? given : own;
+}
+
+bool is_missing(const MapSource& source) {
+  std::error_code error;
+  return source.bytes.empty() && !std::filesystem::exists(source.path, error);
+}
+
+}  // namespace
+
+OpenedDocument open_document(const OpenOptions& options, const Progress& progress) {
+  if (options.size < 0 || options.size > largest_size) {
+    throw InvalidInput("--size must be from 1 to 16384 texels");
+  }
+  progress.at(0.0, "reading the model");
+  ModelReadOptions reading;
+  reading.flip_v = options.flip_v;
+  Model model = read_model(options.model, reading);
+  const auto normals = given_maps(options.normal_maps, model, "--normal-map");
+  const auto albedos = given_maps(options.albedos, model, "--albedo");
+  Mesh mesh = std::move(model.mesh);
+  model.mesh = {};
+
+  OpenedDocument opened{std::move(model), Document({}, {}), {}, {}};
+  opened.notes = opened.model.notes;
+  std::vector<Document::Maps> maps;
+  for (std::size_t i = 0; i < opened.model.texture_sets.size(); ++i) {
+    const TextureSet& set = opened.model.texture_sets[i];
+    progress.at(0.1, "reading the maps of " + set.name);
+    std::optional<MapSource> albedo = choose(albedos[i], set.albedo);
+    if (albedo && !albedos[i] && is_missing(*albedo)) {
+      opened.notes.push_back(set.name + ": the colour map " + albedo->path.string() +
+                             " is missing; shown without colour");
+      albedo.reset();
+    }
+    OpenedSet info;
+    maps.push_back(
+        open_maps(set, choose(normals[i], set.normal_map), albedo, options, opened, info));
+    opened.sets.push_back(std::move(info));
+  }
+  opened.document = Document(std::move(mesh), std::move(maps), progress);
+  return opened;
+}
+
+}  // namespace normalshop
