@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "normalshop/chart/grid.h"
 #include "normalshop/core/normal_map.h"
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
