@@ -54,7 +54,8 @@ RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportO
 std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
                                                    const std::filesystem::path& folder,
                                                    const ExportOptions& options,
-                                                   std::vector<std::string>& notes) {
+                                                   std::vector<std::string>& notes,
+                                                   const Progress& progress) {
   make_folder(folder);
   std::error_code error;
   const std::filesystem::path own_folder = opened.model.path.parent_path();
@@ -68,13 +69,17 @@ std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
   for (std::size_t i = 0; i < opened.sets.size(); ++i) {
     const CodeType type = options.type.value_or(opened.sets[i].type);
     const std::string name = map_name(opened, i, type);
-    write_image(folder / name, export_map(opened, i, options));
+    progress.at(0.0, "encoding maps");
+    const RawImage codes = export_map(opened, i, options);
+    progress.at(0.5, "writing maps");
+    write_image(folder / name, codes);
     files.push_back(folder / name);
     references[i] = {name, opened.sets[i].scale_applied};
     if (type == CodeType::F32 && opened.model.path.extension() != ".obj") {
       notes.push_back(name + ": glTF viewers read only PNG and JPEG; use --bits 8 or 16 for them");
     }
   }
+  progress.at(0.9, "writing the model");
   const WrittenModel written =
       write_model(opened.model, folder / opened.model.path.filename(), references);
   files.insert(files.end(), written.files.begin(), written.files.end());

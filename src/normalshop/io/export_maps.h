@@ -33,6 +33,7 @@ RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportO
 std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
                                                    const std::filesystem::path& folder,
                                                    const ExportOptions& options,
-                                                   std::vector<std::string>& notes);
+                                                   std::vector<std::string>& notes,
+                                                   const Progress& progress = {});
 
 }  // namespace normalshop

@@ -76,6 +76,25 @@ void load_buffers(File& file, std::string& binary) {
   }
 }
 
+/// Writing JSON recurses, so nesting is limited before anything is built.
+bool is_too_deep(const std::string& text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+      continue;
+    }
+    if (c == '"') in_string = true;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > 256) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void fail(const File& file, const std::string& what) {
@@ -83,6 +102,9 @@ void fail(const File& file, const std::string& what) {
 }
 
 Json parse_json(const std::string& text, const std::string& name) {
+  if (is_too_deep(text)) {
+    throw InvalidInput("'" + name + "' nests its JSON deeper than 256 levels");
+  }
   Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object()) {
     throw InvalidInput("'" + name + "' is no glTF file: it does not hold a JSON object");

@@ -84,8 +84,10 @@ NormalMap fit_size(NormalMap map, int size) {
 }
 
 NormalMap open_normals(const MapSource& source, const std::string& set_name,
-                       const OpenOptions& options, OpenedDocument& opened, OpenedSet& info) {
+                       const OpenOptions& options, OpenedDocument& opened, OpenedSet& info,
+                       const Progress& progress) {
   RawImage codes = read_source(source);
+  progress.at(0.3, "guessing conventions");
   info.normal_map = source.name.empty() ? source.path.string() : source.name;
   info.type = codes.type();
   const std::string extension = source.path.extension().string();
@@ -102,12 +104,13 @@ NormalMap open_normals(const MapSource& source, const std::string& set_name,
     opened.notes.push_back(set_name + ": the model scales its normals by " +
                            std::to_string(source.scale) + "; this was multiplied into the map");
   }
+  progress.at(0.4, "resizing maps");
   return fit_size(std::move(map), options.size);
 }
 
 Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& normals,
                          const std::optional<MapSource>& albedo, const OpenOptions& options,
-                         OpenedDocument& opened, OpenedSet& info) {
+                         OpenedDocument& opened, OpenedSet& info, const Progress& progress) {
   Document::Maps maps;
   if (albedo) {
     RawImage codes = read_source(*albedo);
@@ -116,7 +119,7 @@ Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& 
     maps.albedo = ColorMap(set.albedo_factor);
   }
   if (normals) {
-    maps.normals = open_normals(*normals, set.name, options, opened, info);
+    maps.normals = open_normals(*normals, set.name, options, opened, info, progress);
     return maps;
   }
   const RawImage& color = maps.albedo.codes();
@@ -167,7 +170,7 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
   std::vector<Document::Maps> maps;
   for (std::size_t i = 0; i < opened.model.texture_sets.size(); ++i) {
     const TextureSet& set = opened.model.texture_sets[i];
-    progress.at(0.1, "reading the maps of " + set.name);
+    progress.at(0.1, "reading maps");
     std::optional<MapSource> albedo = choose(albedos[i], set.albedo);
     if (albedo && !albedos[i] && is_missing(*albedo)) {
       opened.notes.push_back(set.name + ": the colour map " + albedo->path.string() +
@@ -175,8 +178,8 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
       albedo.reset();
     }
     OpenedSet info;
-    maps.push_back(
-        open_maps(set, choose(normals[i], set.normal_map), albedo, options, opened, info));
+    maps.push_back(open_maps(set, choose(normals[i], set.normal_map), albedo, options, opened, info,
+                             progress));
     opened.sets.push_back(std::move(info));
   }
   opened.document = Document(std::move(mesh), std::move(maps), progress);

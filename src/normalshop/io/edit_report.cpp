@@ -1,0 +1,165 @@
+#include "normalshop/io/edit_report.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "normalshop/io/atomic_file.h"
+
+namespace normalshop {
+
+namespace {
+
+/// Turns the stages that Progress announces into times.
+class StageClock {
+ public:
+  explicit StageClock(std::vector<std::pair<std::string, double>>& times) : times_(times) {}
+  void start(std::string_view stage) {
+    stop();
+    const auto same = [&](const auto& t) { return t.first == stage; };
+    const auto found = std::find_if(times_.begin(), times_.end(), same);
+    current_ = static_cast<std::size_t>(found - times_.begin());
+    if (found == times_.end()) times_.emplace_back(stage, 0.0);
+  }
+  void stop() {
+    const auto now = std::chrono::steady_clock::now();
+    if (current_ < times_.size()) {
+      times_[current_].second += std::chrono::duration<double>(now - last_).count();
+    }
+    current_ = times_.size() + 1;
+    last_ = now;
+  }
+
+ private:
+  std::vector<std::pair<std::string, double>>& times_;
+  std::size_t current_ = std::size_t(-1);
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::vector<const NormalMap*> maps_of(const Document& document) {
+  std::vector<const NormalMap*> maps;
+  for (const StorageSet& set : document.storage().sets) maps.push_back(&set.normals);
+  return maps;
+}
+
+std::vector<float> select(const std::vector<float>& all, const std::vector<std::uint32_t>& chosen) {
+  std::vector<float> out;
+  out.reserve(chosen.size());
+  for (const std::uint32_t i : chosen) out.push_back(all[i]);
+  return out;
+}
+
+void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
+  Document& document = job.opened.document;
+  clock.start("seams");
+  const std::vector<SeamEdge> edges = find_seams(document.mesh()).edges;
+  const std::vector<const NormalMap*> maps = maps_of(document);
+  const std::vector<SeamSample> samples = sample_seams(document.mesh(), edges, maps);
+  const std::vector<float> before = seam_angles(document.mesh(), samples, maps);
+  clock.start("edits");
+  for (const Edit& edit : recipe.edits) {
+    job.operators.push_back(edit.operation->name());
+    job.edits.push_back(document.apply(edit));
+  }
+  clock.start("seams");
+  const std::vector<float> after = seam_angles(document.mesh(), samples, maps);
+  const std::vector<std::uint32_t> crossed = edited_samples(document.mesh(), samples, maps);
+  job.seams_before = summarize(select(before, crossed));
+  job.seams_after = summarize(select(after, crossed));
+  job.seams_growth = mismatch_growth(before, after, crossed);
+  clock.stop();
+}
+
+Value mismatch_value(const SeamMismatch& m) {
+  return Value::Object{{"mean", m.mean}, {"median", m.p50}, {"p99", m.p99}, {"largest", m.max}};
+}
+
+Value edits_value(const EditJob& job) {
+  Value::Array out;
+  for (std::size_t i = 0; i < job.edits.size(); ++i) {
+    const EditReport& e = job.edits[i];
+    out.push_back(Value::Object{{"operator", job.operators[i]},
+                                {"texels_changed", e.pushed.changed},
+                                {"largest_change_degrees", e.pushed.largest_change},
+                                {"chart", Value::Array{e.chart_width, e.chart_height}},
+                                {"pixel", e.pixel},
+                                {"seconds", Value::Object{{"pull", e.times.pull},
+                                                          {"operator", e.times.operate},
+                                                          {"push", e.times.push}}}});
+  }
+  return out;
+}
+
+Value sets_value(const EditJob& job) {
+  Value::Array out;
+  for (std::size_t i = 0; i < job.opened.sets.size(); ++i) {
+    const OpenedSet& set = job.opened.sets[i];
+    const NormalMap& map = job.opened.document.storage().sets[i].normals;
+    Value::Object fields{{"name", job.opened.model.texture_sets[i].name},
+                         {"normal_map", set.normal_map},
+                         {"size", Value::Array{map.width(), map.height()}},
+                         {"imported_size", Value::Array{set.imported_width, set.imported_height}},
+                         {"bits", name_of(set.type)},
+                         {"space", name_of(map.convention().space)},
+                         {"green", map.convention().green_down ? "down" : "up"},
+                         {"texels_edited", map.edited_count()}};
+    if (set.guess) {
+      fields.emplace_back("space_confidence", set.guess->space_confidence);
+      fields.emplace_back("green_confidence", set.guess->green_confidence);
+    }
+    out.emplace_back(std::move(fields));
+  }
+  return out;
+}
+
+}  // namespace
+
+EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
+                     const std::filesystem::path& folder, const ExportOptions& options) {
+  std::vector<std::pair<std::string, double>> times;
+  StageClock clock(times);
+  Progress progress;
+  progress.report = [&](double, std::string_view stage) {
+    clock.start(stage);
+    return true;
+  };
+  EditJob job{open_document(open, progress), {}, {}, {}, {}, {}, {}, {}, {}};
+  clock.stop();
+  job.notes = job.opened.notes;
+  apply_all(job, recipe, clock);
+  job.files = export_document(job.opened, folder, options, job.notes, progress);
+  clock.stop();
+  job.times = std::move(times);
+  job.files.push_back(folder / "report.json");
+  write_file(job.files.back(), to_json(report_value(job)));
+  return job;
+}
+
+Value report_value(const EditJob& job) {
+  Value::Array files;
+  for (const auto& file : job.files) files.emplace_back(file.filename().string());
+  Value::Array notes;
+  for (const std::string& note : job.notes) notes.emplace_back(note);
+  Value::Object times;
+  for (const auto& [stage, seconds] : job.times) times.emplace_back(stage, seconds);
+  std::size_t changed = 0;
+  float largest = 0.0F;
+  for (const EditReport& e : job.edits) largest = std::max(largest, e.pushed.largest_change);
+  for (const StorageSet& set : job.opened.document.storage().sets) {
+    changed += set.normals.edited_count();
+  }
+  return Value::Object{
+      {"model", job.opened.model.path.filename().string()},
+      {"texels_changed", changed},
+      {"largest_change_degrees", largest},
+      {"seams", Value::Object{{"samples", job.seams_growth.count},
+                              {"before_degrees", mismatch_value(job.seams_before)},
+                              {"after_degrees", mismatch_value(job.seams_after)},
+                              {"growth_degrees", mismatch_value(job.seams_growth)}}},
+      {"texture_sets", sets_value(job)},
+      {"edits", edits_value(job)},
+      {"seconds", times},
+      {"files", files},
+      {"notes", notes}};
+}
+
+}  // namespace normalshop

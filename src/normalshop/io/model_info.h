@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "normalshop/document/value.h"
+
+namespace normalshop {
+
+/// What a model (meshes, texture sets, charts, seams, overlaps, texel density, guessed conventions)
+/// or an image is, for people and programs. Throws IoError or InvalidInput.
+Value file_info(const std::filesystem::path& file, bool flip_v = false);
+
+}  // namespace normalshop
