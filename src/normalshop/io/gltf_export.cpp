@@ -58,7 +58,8 @@ Primitive weld(const Mesh& mesh, std::uint32_t texture_set) {
   for (std::size_t corner = 0; corner < mesh.corner_count(); ++corner) {
     if (mesh.texture_sets[corner / 3] != texture_set) continue;
     const Vertex v = vertex_of(mesh, corner);
-    const auto [found, is_new] = known.try_emplace(v, static_cast<std::uint32_t>(out.vertices.size()));
+    const auto [found, is_new] =
+        known.try_emplace(v, static_cast<std::uint32_t>(out.vertices.size()));
     if (is_new) out.vertices.push_back(v);
     out.indices.push_back(found->second);
   }
@@ -123,10 +124,9 @@ class Exporter {
   std::size_t add_accessor(std::span<const std::byte> bytes, int target, Json accessor) {
     const std::size_t offset = binary_.size();
     binary_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    accessor["bufferView"] = append("bufferViews", {{"buffer", 0},
-                                                    {"byteOffset", offset},
-                                                    {"byteLength", bytes.size()},
-                                                    {"target", target}});
+    accessor["bufferView"] = append(
+        "bufferViews",
+        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes.size()}, {"target", target}});
     return append("accessors", std::move(accessor));
   }
 
@@ -134,9 +134,9 @@ class Exporter {
     Json low = Json::array();
     Json high = Json::array();
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax_element(
-          part.vertices.begin(), part.vertices.end(),
-          [k](const Vertex& u, const Vertex& v) { return u[k] < v[k]; });
+      const auto [a, b] =
+          std::minmax_element(part.vertices.begin(), part.vertices.end(),
+                              [k](const Vertex& u, const Vertex& v) { return u[k] < v[k]; });
       low.push_back((*a)[k]);
       high.push_back((*b)[k]);
     }
@@ -170,7 +170,8 @@ void check(const std::filesystem::path& path, const Mesh& mesh,
            const std::vector<GltfMaterial>& materials) {
   const std::string name = "'" + path.string() + "'";
   if (path.extension() != ".gltf") throw InvalidInput(name + ": the extension must be .gltf");
-  if (mesh.triangles.empty()) throw InvalidInput(name + ": a mesh without triangles is not written");
+  if (mesh.triangles.empty())
+    throw InvalidInput(name + ": a mesh without triangles is not written");
   if (mesh.normals.size() != mesh.corner_count() || mesh.uvs.size() != mesh.corner_count()) {
     throw InvalidInput(name + ": the mesh needs normals and UVs at every corner");
   }

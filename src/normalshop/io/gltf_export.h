@@ -16,8 +16,8 @@ struct GltfMaterial {
   float roughness = 0.9F;
 };
 
-/// Writes a mesh that has no file of its own yet: a .gltf with its .bin beside it, one primitive and
-/// one material a texture set (in the order of mesh.texture_set_names; texture sets without
+/// Writes a mesh that has no file of its own yet: a .gltf with its .bin beside it, one primitive
+/// and one material a texture set (in the order of mesh.texture_set_names; texture sets without
 /// triangles are left out). Corners that are equal in position, normal, UV and tangent share a
 /// vertex. Throws InvalidInput when the extension is another, the mesh has no triangles, normals or
 /// UVs, or the numbers of materials and texture sets differ; IoError when it cannot be written.

@@ -1,0 +1,117 @@
+#include <cstdio>
+#include <memory>
+
+#include "verbs.h"
+
+#include "normalshop/core/color_map.h"
+#include "normalshop/core/error.h"
+#include "normalshop/document/value.h"
+#include "normalshop/io/conventions.h"
+#include "normalshop/io/image_file.h"
+#include "normalshop/rgbn/angular_error.h"
+#include "normalshop/rgbn/heatmap.h"
+
+namespace normalshop::cli {
+
+namespace {
+
+struct CompareFlags {
+  std::filesystem::path a;
+  std::filesystem::path b;
+  std::filesystem::path mask;
+  std::filesystem::path picture;
+  double largest = 0.0;
+  bool json = false;
+};
+
+Image<Vec3f> read_normals(const std::filesystem::path& path) {
+  RawImage codes = read_image(path);
+  // Two maps of one kind: only how codes stand for numbers is guessed, not the signs.
+  NormalConvention convention = guess_convention(codes).convention;
+  convention.space = convention.two_channel ? NormalSpace::Tangent : NormalSpace::Object;
+  convention.green_down = false;
+  const NormalMap map(std::move(codes), convention);
+  Image<Vec3f> normals(map.width(), map.height());
+  for (int y = 0; y < map.height(); ++y) map.read_normals(y, normals.row(y));
+  return normals;
+}
+
+MaskImage read_mask(const std::filesystem::path& path) {
+  const RawImage codes = read_image(path);
+  MaskImage mask(codes.width(), codes.height());
+  for (int y = 0; y < mask.height(); ++y) {
+    for (int x = 0; x < mask.width(); ++x) mask(x, y) = codes.code(x, y, 0);
+  }
+  return mask;
+}
+
+std::string size_text(const std::filesystem::path& path, int width, int height) {
+  return path.string() + " has " + std::to_string(width) + " x " + std::to_string(height);
+}
+
+void write_picture(const CompareFlags& flags, MaskView degrees, double scale) {
+  ColorImage colors(degrees.width(), degrees.height());
+  heatmap(degrees, static_cast<float>(scale), colors);
+  for (int y = 0; y < colors.height(); ++y) {
+    for (int x = 0; x < colors.width(); ++x) {
+      colors(x, y) = colors(x, y).unaryExpr([](float c) { return srgb_to_linear(c); });
+    }
+  }
+  write_png_srgb(flags.picture, colors);
+}
+
+void run_compare(const CompareFlags& flags) {
+  const Image<Vec3f> a = read_normals(flags.a);
+  const Image<Vec3f> b = read_normals(flags.b);
+  if (a.width() != b.width() || a.height() != b.height()) {
+    throw InvalidInput("maps of one size can be compared, but " +
+                       size_text(flags.a, a.width(), a.height()) + " and " +
+                       size_text(flags.b, b.width(), b.height()));
+  }
+  MaskImage mask;
+  if (!flags.mask.empty()) {
+    mask = read_mask(flags.mask);
+    if (mask.width() != a.width() || mask.height() != a.height()) {
+      throw InvalidInput("the mask must have the maps' size, but " +
+                         size_text(flags.mask, mask.width(), mask.height()));
+    }
+  }
+  MaskImage degrees(a.width(), a.height());
+  angles_between(a, b, mask, degrees);
+  const AngularError error = summarize(degrees);
+  const double scale = flags.largest > 0.0 ? flags.largest : std::max(error.largest, 1e-3);
+  if (!flags.picture.empty()) write_picture(flags, degrees, scale);
+  if (flags.json) {
+    Value::Object report{{"pixels", error.pixels},
+                         {"mean", error.mean},
+                         {"median", error.median},
+                         {"p99", error.p99},
+                         {"largest", error.largest}};
+    if (!flags.picture.empty()) report.emplace_back("picture", flags.picture.string());
+    std::fputs(to_json(report).c_str(), stdout);
+    return;
+  }
+  std::printf("%zu pixels; degrees: mean %.4f, median %.4f, 99th percentile %.4f, largest %.4f\n",
+              error.pixels, error.mean, error.median, error.p99, error.largest);
+  if (!flags.picture.empty()) {
+    std::printf("wrote %s (dark: 0, pale: %.3g degrees)\n", flags.picture.string().c_str(), scale);
+  }
+}
+
+}  // namespace
+
+void add_compare_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("compare", "Measures the angles between two normal maps");
+  const auto flags = std::make_shared<CompareFlags>();
+  verb->add_option("a", flags->a, "Normal map")->required();
+  verb->add_option("b", flags->b, "Normal map of the same size and conventions")->required();
+  verb->add_option("--mask", flags->mask, "Image: only pixels whose first channel is not 0 count");
+  verb->add_option("-o,--output", flags->picture, "PNG picture of the angles in false colours");
+  verb->add_option("--max", flags->largest,
+                   "Angle in degrees of the brightest colour (the largest unless given)")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--json", flags->json, "Print the result as JSON");
+  verb->callback([flags] { run_compare(*flags); });
+}
+
+}  // namespace normalshop::cli

@@ -1,0 +1,58 @@
+#include <cstdio>
+#include <memory>
+
+#include "verbs.h"
+
+#include "normalshop/core/options.h"
+#include "normalshop/io/model_info.h"
+
+namespace normalshop::cli {
+
+namespace {
+
+/// "name: value" lines, nested objects indented.
+void print_value(const Value& value, int depth) {
+  const int indent = 2 * depth;
+  for (const auto& [name, field] : *value.object()) {
+    if (field.object() != nullptr) {
+      std::printf("%*s%s:\n", indent, "", name.c_str());
+      print_value(field, depth + 1);
+    } else if (field.array() != nullptr && !field.array()->empty() &&
+               field.array()->front().object() != nullptr) {
+      for (const Value& item : *field.array()) {
+        std::printf("%*s%s:\n", indent, "", name.c_str());
+        print_value(item, depth + 1);
+      }
+    } else if (field.text() != nullptr) {
+      std::printf("%*s%s: %s\n", indent, "", name.c_str(), field.text()->c_str());
+    } else {
+      std::printf("%*s%s: %s", indent, "", name.c_str(), to_json(field).c_str());
+    }
+  }
+}
+
+}  // namespace
+
+void add_info_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("info", "Says what a model or a map is");
+  struct Flags {
+    std::filesystem::path file;
+    bool flip_v = false;
+    bool json = false;
+  };
+  const auto flags = std::make_shared<Flags>();
+  verb->add_option("file", flags->file, "Model (glTF, GLB, OBJ) or image")->required();
+  verb->add_flag("--flip-v", flags->flip_v,
+                 "The model's V runs the other way than its format says");
+  verb->add_flag("--json", flags->json, "Print as JSON");
+  verb->callback([flags] {
+    const Value info = file_info(flags->file, flags->flip_v);
+    if (flags->json) {
+      std::fputs(to_json(info).c_str(), stdout);
+    } else {
+      print_value(info, 0);
+    }
+  });
+}
+
+}  // namespace normalshop::cli

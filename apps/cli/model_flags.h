@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "normalshop/io/open_document.h"
+
+namespace normalshop::cli {
+
+/// Flags of every verb that opens a model.
+class ModelFlags {
+ public:
+  void add(CLI::App& verb);
+  OpenOptions options() const;
+
+ private:
+  OpenOptions options_;
+  std::string space_;
+  std::string green_;
+};
+
+/// "1,2.5,-3" as a vector. Throws CLI::ValidationError naming the flag.
+Vec3f parse_vector(const std::string& text, const std::string& flag);
+/// A NamedView's name or a direction towards the viewer; null when it is neither.
+ViewSpec parse_view(const std::string& text);
+
+/// Prints notes to standard error, where they don't disturb what another program reads.
+void print_notes(const std::vector<std::string>& notes);
+
+}  // namespace normalshop::cli

@@ -1,0 +1,101 @@
+#include <cstdio>
+#include <memory>
+
+#include "model_flags.h"
+#include "verbs.h"
+
+#include "normalshop/chart/render.h"
+#include "normalshop/core/options.h"
+#include "normalshop/document/value.h"
+#include "normalshop/io/image_file.h"
+
+namespace normalshop::cli {
+
+namespace {
+
+struct RenderFlags {
+  ModelFlags model;
+  std::filesystem::path output;
+  std::string view = "front";
+  std::string light;
+  std::string center;
+  std::string facing;
+  float width = 0.0F;
+  std::string style = "lit";
+  std::string resolution = "1200x1200";
+  bool json = false;
+};
+
+void parse_resolution(const std::string& text, RenderOptions& options) {
+  int read = 0;
+  const int fields = std::sscanf(text.c_str(), "%dx%d%n", &options.width, &options.height, &read);
+  const auto fits = [](int side) { return side >= 1 && side <= 16384; };
+  if (fields == 2 && static_cast<std::size_t>(read) == text.size() && fits(options.width) &&
+      fits(options.height)) {
+    return;
+  }
+  throw CLI::ValidationError("--resolution",
+                             "must be WxH with sides from 1 to 16384, not \"" + text + "\"");
+}
+
+ViewSpec choose_view(const RenderFlags& flags) {
+  if (!flags.facing.empty()) {
+    if (!(flags.width > 0.0F)) throw CLI::ValidationError("--facing", "needs --width");
+    return FacingView{parse_vector(flags.facing, "--facing"), flags.width, flags.width};
+  }
+  return parse_view(flags.view);
+}
+
+void run_render(const RenderFlags& flags) {
+  RenderOptions options;
+  parse_resolution(flags.resolution, options);
+  from_name(flags.style, options.style);
+  if (!flags.light.empty()) options.light = parse_vector(flags.light, "--light");
+  if (options.light.isZero()) throw CLI::ValidationError("--light", "must not be 0,0,0");
+  const ViewSpec spec = choose_view(flags);
+  const auto center = flags.center.empty()
+                          ? std::nullopt
+                          : std::optional<Vec3f>(parse_vector(flags.center, "--center"));
+  const OpenedDocument opened = open_document(flags.model.options());
+  print_notes(opened.notes);
+  View view = resolve(spec, opened.document.mesh());
+  if (center) view.center = *center;
+  if (flags.width > 0.0F) view.width = view.height = flags.width;
+  write_png_srgb(flags.output,
+                 render(opened.document.mesh(), opened.document.storage(), view, options));
+  if (flags.json) {
+    const Value report = Value::Object{
+        {"picture", flags.output.string()}, {"width", options.width}, {"height", options.height}};
+    std::fputs(to_json(report).c_str(), stdout);
+  } else {
+    std::printf("wrote %s\n", flags.output.string().c_str());
+  }
+}
+
+}  // namespace
+
+void add_render_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("render", "Draws a model with its normal maps");
+  const auto flags = std::make_shared<RenderFlags>();
+  flags->model.add(*verb);
+  verb->add_option("-o,--output", flags->output, "PNG file")->required();
+  verb->add_option("--view", flags->view,
+                   "front, back, left, right, top, bottom or a direction x,y,z towards the viewer")
+      ->capture_default_str();
+  verb->add_option("--center", flags->center, "Object-space point x,y,z in the picture's middle");
+  verb->add_option("--facing", flags->facing,
+                   "Look straight at the surface point nearest to x,y,z");
+  verb->add_option("--width", flags->width,
+                   "Width of the view in object units (the model's unless given)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--light", flags->light,
+                   "Direction x,y,z towards the light: x right, y up, z towards the viewer");
+  verb->add_option("--style", flags->style, "What to show")
+      ->check(CLI::IsMember({"lit", "normals", "albedo", "weight", "charts"}))
+      ->capture_default_str();
+  verb->add_option("--resolution", flags->resolution, "WxH in pixels")->capture_default_str();
+  verb->add_flag("--json", flags->json, "Print what was written as JSON");
+  verb->callback([flags] { run_render(*flags); });
+}
+
+}  // namespace normalshop::cli
