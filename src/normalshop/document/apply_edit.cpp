@@ -8,6 +8,7 @@
 #include "normalshop/chart/resolution.h"
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
+#include "normalshop/document/surface_check.h"
 
 namespace normalshop {
 
@@ -34,11 +35,20 @@ Extent view_extent(const View& view) {
           Vec2f(0.5F * view.width, 0.5F * view.height)};
 }
 
-Rect pixel_rect(const ChartGrid& grid, const Extent& extent) {
-  const Vec2f low = grid.to_pixel({extent.low.x(), extent.high.y()});
-  const Vec2f high = grid.to_pixel({extent.high.x(), extent.low.y()});
-  return {static_cast<int>(std::floor(low.x())), static_cast<int>(std::floor(low.y())),
-          static_cast<int>(std::ceil(high.x())) + 1, static_cast<int>(std::ceil(high.y())) + 1};
+Extent intersect(const Extent& a, const Extent& b) {
+  return {a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)};
+}
+
+Extent widened(const Extent& e, float by) {
+  return {e.low - Vec2f::Constant(by), e.high + Vec2f::Constant(by)};
+}
+
+/// A box in the view that holds the whole model.
+Extent model_extent(const Bounds& bounds, const View& view) {
+  const Vec3f middle = view.to_chart(bounds.center() - view.center);
+  const Vec3f half = 0.5F * (bounds.high - bounds.low);
+  const Vec2f reach(view.right.cwiseAbs().dot(half), view.up.cwiseAbs().dot(half));
+  return {middle.head<2>() - reach, middle.head<2>() + reach};
 }
 
 std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const ChartGrid& grid) {
@@ -51,46 +61,19 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
   return out;
 }
 
-ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, const Mesh& mesh,
-                      const StorageAtlas& storage) {
+/// The window that the edit needs. There is nothing to read or write beyond the model, so that a
+/// huge brush or sigma costs no more than the whole model does.
+ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, const Extent& model,
+                      const Mesh& mesh, const StorageAtlas& storage) {
   const float pixel = texel_pixel_size(mesh, storage, view, extent.low, extent.high);
-  const float largest =
-      std::max(extent.low.cwiseAbs().maxCoeff(), extent.high.cwiseAbs().maxCoeff());
-  if (!(largest < 1e5F * std::max(view.width, view.height))) {
-    throw InvalidInput(edit.path + ".strokes: points lie far outside the view, which is " +
-                       std::to_string(view.width) + " wide");
-  }
-  const float margin = edit.operation->reach() + 4.0F * pixel;
-  const Vec2f wide(margin, margin);
-  return make_grid(view, pixel, extent.low - wide, extent.high + wide);
-}
-
-/// Does any part of the stroke's path lie over surface that faces the viewer?
-bool meets_surface(const Stroke& stroke, const EditingChart& chart) {
-  const auto on_surface = [&](const Vec2f& p) {
-    const int x = static_cast<int>(std::lround(p.x()));
-    const int y = static_cast<int>(std::lround(p.y()));
-    return chart.weight.rect().contains(x, y) && chart.weight(x, y) > 0.0F;
-  };
-  for (std::size_t i = 0; i < stroke.size(); ++i) {
-    const Vec2f a = stroke[i].position;
-    const Vec2f b = stroke[std::min(i + 1, stroke.size() - 1)].position;
-    const int steps = 1 + std::min(static_cast<int>((b - a).norm()), 20000);
-    for (int k = 0; k <= steps; ++k) {
-      const float t = static_cast<float>(k) / static_cast<float>(steps);
-      if (on_surface(a + t * (b - a))) return true;
-    }
-  }
-  return false;
-}
-
-void check_on_surface(const Edit& edit, const std::vector<Stroke>& strokes,
-                      const EditingChart& chart) {
-  for (std::size_t i = 0; i < strokes.size(); ++i) {
-    if (meets_surface(strokes[i], chart)) continue;
-    throw InvalidInput(edit.path + ".strokes[" + std::to_string(i) +
-                       "]: lies off the surface that the view shows; points are in object units "
-                       "from the view's centre, x right and y up");
+  const Extent read = intersect(widened(extent, edit.operation->reach()), model);
+  const Extent window = widened(read, 4.0F * pixel);
+  try {
+    return make_grid(view, pixel, window.low, window.high);
+  } catch (const InvalidInput&) {
+    throw InvalidInput(edit.path +
+                       ".view must have its centre nearer to the model: its pixels are too many to "
+                       "count from there");
   }
 }
 
@@ -124,12 +107,31 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
 
 void scale(float factor, Rect region, SlopeSpan change, MaskSpan coverage) {
   if (factor == 1.0F) return;
-  for (int y = region.y0; y < region.y1; ++y) {
-    for (int x = region.x0; x < region.x1; ++x) {
-      change(x, y) *= factor;
-      coverage(x, y) *= factor;
+  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
+    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
+      for (int x = region.x0; x < region.x1; ++x) {
+        change(x, y) *= factor;
+        coverage(x, y) *= factor;
+      }
     }
-  }
+  });
+}
+
+/// Rasterises, pulls what the operator needs and weighs.
+EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas& storage,
+                         const ChartGrid& grid, float model_size) {
+  EditingChart chart;
+  chart.grid = grid;
+  Rasterizer().rasterize(mesh, chart.grid, chart.ids);
+  PullOptions pulled;
+  pulled.normals = edit.operation->reads() && edit.details == DetailsRule::Keep;
+  pull_attributes(mesh, storage, chart, pulled);
+  EffectiveOptions effective;
+  effective.full_angle = edit.effective.full;
+  effective.zero_angle = edit.effective.zero;
+  effective.step_falloff = step_falloff_share * model_size;
+  compute_weight(chart, effective);
+  return chart;
 }
 
 }  // namespace
@@ -138,35 +140,37 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage)
   EditReport report;
   Stopwatch watch;
   const View view = resolve(edit.view, mesh);
+  const Bounds box = bounds(mesh);
+  const Extent model = model_extent(box, view);
+  check_near_view(edit, view);
   Extent extent = edit.operation->extent(edit.strokes);
   if (extent.empty()) extent = view_extent(view);
-
-  EditingChart chart;
-  chart.grid = choose_grid(edit, view, extent, mesh, storage);
-  Rasterizer().rasterize(mesh, chart.grid, chart.ids);
-  PullOptions pulled;
-  pulled.normals = edit.operation->reads() && edit.details == DetailsRule::Keep;
-  pull_attributes(mesh, storage, chart, pulled);
-  EffectiveOptions effective;
-  effective.full_angle = edit.effective.full;
-  effective.zero_angle = edit.effective.zero;
-  effective.step_falloff = step_falloff_share * bounds(mesh).diagonal();
-  compute_weight(chart, effective);
+  extent = intersect(extent, widened(model, 1e-3F * box.diagonal()));
+  if (extent.empty()) {
+    fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), model);
+  }
+  EditingChart chart = build_chart(
+      edit, mesh, storage, choose_grid(edit, view, extent, model, mesh, storage), box.diagonal());
   report.times.pull = watch.lap();
 
   OperatorInput input;
   input.strokes = to_pixels(edit.strokes, chart.grid);
-  check_on_surface(edit, input.strokes, chart);
   input.pixel = chart.grid.pixel;
   input.view = pixel_rect(chart.grid, view_extent(view));
-  input.region = intersect(pixel_rect(chart.grid, extent), chart.weight.rect());
+  input.model = pixel_rect(chart.grid, model);
+  input.region = intersect(grow(pixel_rect(chart.grid, extent), 2), chart.weight.rect());
+  check_on_surface(edit, input.strokes, chart, input.region, model);
   Source source;
   if (edit.operation->reads()) source = make_source(edit, chart);
+  // Push needs neither.
+  chart.base_normal = {};
+  chart.normal = {};
   input.source = source.slopes;
   input.validity = source.validity;
   SlopeImage change(chart.grid.width(), chart.grid.height(), Vec2f(0.0F, 0.0F));
   MaskImage coverage(chart.grid.width(), chart.grid.height(), 0.0F);
-  Rect region = edit.operation->run(input, change, coverage);
+  const Rect region = edit.operation->run(input, change, coverage);
+  source = {};
   scale(edit.strength, region, change, coverage);
   report.times.operate = watch.lap();
 

@@ -25,6 +25,8 @@ struct Extent {
 };
 /// The box around the strokes, widened; empty without points.
 Extent extent_of(const std::vector<UnitStroke>& strokes, float margin);
+/// The same around the smooth curves through the strokes' points (rgbn/pen.h).
+Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bool closed);
 
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {
@@ -33,8 +35,17 @@ struct OperatorInput {
   MaskView validity;   ///< 1 where source is seen facing surface; empty likewise
   Rect region;         ///< where the result is wanted; the rest stays as it is
   Rect view;           ///< the view's whole extent in pixels of this chart
+  Rect model;          ///< a box around the whole model, likewise
   float pixel = 1.0F;  ///< object units per pixel
   std::vector<Stroke> strokes;  ///< in pixels
+};
+
+/// How an operator uses its strokes: what of them must meet the surface.
+enum class StrokeUse {
+  Path,    ///< the line
+  Loop,    ///< the line, closed
+  Inside,  ///< the closed line and what lies inside it
+  Points,  ///< each point alone, with what it places there
 };
 
 /// An operator with its options: the link between floors 2 and 4. It knows neither mesh nor UI.
@@ -50,11 +61,12 @@ class EditOperator {
   /// Throws InvalidInput (with `path` in front) when these strokes don't fit the operator.
   virtual void check_strokes(const std::vector<UnitStroke>& strokes,
                              const std::string& path) const = 0;
+  virtual StrokeUse stroke_use() const { return StrokeUse::Path; }
   /// Does it read the details under it?
   virtual bool reads() const = 0;
   /// Loads what the options name.
   virtual void load(Assets&) {}
-  /// Where it may change something; empty: the whole view.
+  /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
   /// Object units read beyond the extent.
   virtual float reach() const { return 0.0F; }

@@ -1,7 +1,9 @@
 #include "normalshop/document/field_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "normalshop/core/error.h"
 
@@ -9,9 +11,26 @@ namespace normalshop {
 
 namespace {
 
+constexpr double farthest = 1e9;
+
+/// What required() gives for a missing field.
+const Value& missing_value() {
+  static const Value value;
+  return value;
+}
+
 std::string plain(double number) {
-  const std::string text = to_json(Value(number));
-  return text.substr(0, text.size() - 1);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", number);
+  return text.data();
+}
+
+std::string range_text(double low, double high) {
+  return "number from " + plain(low) + " to " + plain(high);
+}
+
+float coordinate(const FieldReader& reader) {
+  return static_cast<float>(reader.number(-farthest, farthest));
 }
 
 }  // namespace
@@ -26,7 +45,10 @@ std::string join_names(const std::vector<std::string_view>& names) {
 }
 
 void FieldReader::fail(std::string_view expected) const {
-  throw InvalidInput(path_ + ": must be " + std::string(expected) + ", not " + value_.describe());
+  // At the root the path is only the file's name: "scar.json: must be ...".
+  const std::string subject = path_.ends_with(": ") ? path_ : path_ + " ";
+  if (missing()) throw InvalidInput(subject + "is missing; it must be " + std::string(expected));
+  throw InvalidInput(subject + "must be " + std::string(expected) + ", not " + value_.describe());
 }
 
 double FieldReader::number(double low, double high) const {
@@ -35,7 +57,13 @@ double FieldReader::number(double low, double high) const {
   const bool fits = n != nullptr && std::isfinite(*n) && std::abs(*n) < 1e30 &&
                     (!limited || (*n >= low && *n <= high));
   if (fits) return *n;
-  fail(limited ? "a number from " + plain(low) + " to " + plain(high) : "a finite number");
+  fail(limited ? "a " + range_text(low, high) : "a number");
+}
+
+int FieldReader::whole_number(int low, int high) const {
+  const double* n = value_.number();
+  if (n != nullptr && *n >= low && *n <= high && *n == std::trunc(*n)) return static_cast<int>(*n);
+  fail("a whole " + range_text(low, high));
 }
 
 bool FieldReader::boolean() const {
@@ -59,14 +87,13 @@ std::size_t FieldReader::one_of(const std::vector<std::string_view>& names) cons
 Vec2f FieldReader::vec2() const {
   if (value_.array() == nullptr || value_.array()->size() != 2) fail("two numbers [x, y]");
   const auto each = items();
-  return {static_cast<float>(each[0].number()), static_cast<float>(each[1].number())};
+  return {coordinate(each[0]), coordinate(each[1])};
 }
 
 Vec3f FieldReader::vec3() const {
   if (value_.array() == nullptr || value_.array()->size() != 3) fail("three numbers [x, y, z]");
   const auto each = items();
-  return {static_cast<float>(each[0].number()), static_cast<float>(each[1].number()),
-          static_cast<float>(each[2].number())};
+  return {coordinate(each[0]), coordinate(each[1]), coordinate(each[2])};
 }
 
 std::vector<FieldReader> FieldReader::items() const {
@@ -87,10 +114,11 @@ FieldReader FieldReader::child(std::string_view name, const Value& value) const 
 
 FieldReader FieldReader::required(std::string_view name) const {
   if (value_.object() == nullptr) fail("an object with fields");
-  if (const Value* found = value_.find(name)) return child(name, *found);
-  static const Value missing;
-  throw InvalidInput(child(name, missing).path() + ": this field is missing");
+  const Value* found = value_.find(name);
+  return child(name, found != nullptr ? *found : missing_value());
 }
+
+bool FieldReader::missing() const { return &value_ == &missing_value(); }
 
 bool FieldReader::has(std::string_view name) const { return value_.find(name) != nullptr; }
 
@@ -99,8 +127,10 @@ void FieldReader::only(const std::vector<std::string_view>& names) const {
   if (fields == nullptr) fail("an object with fields");
   for (const auto& [name, value] : *fields) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw InvalidInput(child(name, value).path() + ": there is no such field; accepted: " +
-                       (names.empty() ? "none" : join_names(names)));
+    // A name from the file may hold anything: quoted, so that the sentence stays one line.
+    const std::string field = Value(name).describe().substr(sizeof("the text ") - 1);
+    throw InvalidInput((path_.ends_with(": ") ? path_ : path_ + ": ") + "there is no field " +
+                       field + "; it may be " + (names.empty() ? "none" : join_names(names)));
   }
 }
 

@@ -17,22 +17,25 @@ class FieldReader {
  public:
   FieldReader(const Value& value, std::string path) : value_(value), path_(std::move(path)) {}
 
+  /// Null for a required field that is missing: the getter's message then says so.
   const Value& value() const { return value_; }
   const std::string& path() const { return path_; }
+  /// "<path> must be <expected>, not <what is there>", or "... is missing; it must be <expected>".
   [[noreturn]] void fail(std::string_view expected) const;
 
-  /// Both ends included; low == high: any finite number.
+  /// Both ends included; low == high: any number up to 1e30.
   double number(double low = 0.0, double high = 0.0) const;
+  int whole_number(int low, int high) const;
   bool boolean() const;
   const std::string& text() const;
   /// The index of one of these names.
   std::size_t one_of(const std::vector<std::string_view>& names) const;
-  /// Exactly 2 or 3 finite numbers.
+  /// Exactly 2 or 3 numbers from -1e9 to 1e9.
   Vec2f vec2() const;
   Vec3f vec3() const;
   std::vector<FieldReader> items() const;
 
-  /// Fields of an object.
+  /// Fields of an object. Asking for one that is missing throws only when its value is read.
   FieldReader required(std::string_view name) const;
   bool has(std::string_view name) const;
   /// Throws when the object has a field that is not among `names`.
@@ -40,6 +43,7 @@ class FieldReader {
 
  private:
   FieldReader child(std::string_view name, const Value& value) const;
+  bool missing() const;
 
   const Value& value_;
   std::string path_;

@@ -10,14 +10,20 @@
 /// Options structs to and from values, by their reflection (core/options.h).
 namespace normalshop {
 
-/// Lengths have no default that fits every model: those whose default is not 0 must be given.
-template <class Owner>
-constexpr bool is_required(const Field<Owner, float>& f) {
-  return f.unit == "length" && Owner{}.*f.member != 0.0F;
-}
-template <class Owner, class T>
-constexpr bool is_required(const Field<Owner, T>&) {
-  return false;
+/// Lengths have no default that fits every model: those whose default is not 0 must be given, and
+/// so must what the options list as `static constexpr std::array required_fields{...}`.
+template <class Options, class Owner, class T>
+constexpr bool is_required(const Field<Owner, T>& f) {
+  if constexpr (requires { Options::required_fields; }) {
+    for (const std::string_view name : Options::required_fields) {
+      if (name == f.name) return true;
+    }
+  }
+  if constexpr (std::is_same_v<T, float>) {
+    return f.unit == "length" && Owner{}.*f.member != 0.0F;
+  } else {
+    return false;
+  }
 }
 
 template <class E>
@@ -32,7 +38,7 @@ void read_field(const FieldReader& reader, const Field<Owner, T>& f, Options& op
   if constexpr (std::is_same_v<T, float>) {
     target = static_cast<float>(reader.number(f.min, f.max));
   } else if constexpr (std::is_same_v<T, int>) {
-    target = static_cast<int>(reader.number(f.min, f.max));
+    target = reader.whole_number(static_cast<int>(f.min), static_cast<int>(f.max));
   } else if constexpr (std::is_same_v<T, bool>) {
     target = reader.boolean();
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -41,10 +47,11 @@ void read_field(const FieldReader& reader, const Field<Owner, T>& f, Options& op
     std::vector<Vec2f> points;
     for (const FieldReader& point : reader.items()) points.push_back(point.vec2());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i > 0 && points[i].x() <= points[i - 1].x()) reader.fail("points with increasing u");
+      if (i > 0 && points[i].x() <= points[i - 1].x()) {
+        reader.fail("points [u, height] with increasing u");
+      }
     }
-    if (points.empty()) reader.fail("at least one point [u, height]");
-    target = Curve(std::move(points));
+    target = points.empty() ? Curve() : Curve(std::move(points));
   } else {
     static_assert(NamedEnum<T>);
     target = static_cast<T>(reader.one_of(names_list<T>()));
@@ -59,7 +66,8 @@ Options read_options(const FieldReader& reader) {
   for_each_field<Options>([&](const auto& f) { names.push_back(f.name); });
   reader.only(names);
   for_each_field<Options>([&](const auto& f) {
-    if (is_required(f) || reader.has(f.name)) read_field(reader.required(f.name), f, options);
+    if (is_required<Options>(f) || reader.has(f.name))
+      read_field(reader.required(f.name), f, options);
   });
   return options;
 }
@@ -110,7 +118,7 @@ Value::Array describe_fields() {
       for (const std::string_view name : names_of(T{})) names.emplace_back(name);
       field.emplace_back("names", names);
     }
-    if (is_required(f)) {
+    if (is_required<Options>(f)) {
       field.emplace_back("required", true);
     } else {
       field.emplace_back("default", field_value(Options{}, f));

@@ -15,7 +15,7 @@ float extent_field(const FieldReader& reader, std::string_view name) {
 
 Vec3f direction_field(const FieldReader& reader) {
   const Vec3f v = reader.vec3();
-  if (v.norm() < 1e-12F) reader.fail("a direction [x, y, z] that is not all 0");
+  if (v.norm() < 1e-6F) reader.fail("a direction [x, y, z] of a length of at least 1e-6");
   return v;
 }
 
@@ -24,7 +24,8 @@ ViewSpec read_view(const FieldReader& reader) {
     return static_cast<NamedView>(reader.one_of(names_list<NamedView>()));
   }
   if (reader.value().object() == nullptr) {
-    reader.fail(join_names(names_list<NamedView>()) + ", or an object");
+    reader.fail(join_names(names_list<NamedView>()) +
+                ", or an object with \"direction\" or \"facing\"");
   }
   if (reader.has("facing")) {
     reader.only({"facing", "width", "height"});
@@ -44,11 +45,18 @@ ViewSpec read_view(const FieldReader& reader) {
   return view;
 }
 
+float coordinate(const FieldReader& reader) {
+  return static_cast<float>(reader.number(-largest_extent, largest_extent));
+}
+
 UnitPoint read_point(const FieldReader& reader) {
+  const Value::Array* array = reader.value().array();
+  if (array == nullptr || (array->size() != 2 && array->size() != 3)) {
+    reader.fail("[x, y] or [x, y, pressure]");
+  }
   const std::vector<FieldReader> items = reader.items();
-  if (items.size() != 2 && items.size() != 3) reader.fail("[x, y] or [x, y, pressure]");
   UnitPoint point;
-  point.position = {static_cast<float>(items[0].number()), static_cast<float>(items[1].number())};
+  point.position = {coordinate(items[0]), coordinate(items[1])};
   if (items.size() == 3) point.pressure = static_cast<float>(items[2].number(0.0, 1.0));
   return point;
 }
@@ -69,7 +77,11 @@ EffectiveAngles read_effective(const FieldReader& reader) {
   EffectiveAngles angles;
   if (reader.has("full")) angles.full = static_cast<float>(reader.required("full").number(0, 85));
   if (reader.has("zero")) angles.zero = static_cast<float>(reader.required("zero").number(1, 86));
-  if (angles.full >= angles.zero) reader.fail("angles with full below zero");
+  if (angles.full >= angles.zero) {
+    throw InvalidInput(
+        reader.path() + ".full must be below zero, which is " +
+        to_json(Value(angles.zero)).substr(0, to_json(Value(angles.zero)).size() - 1) + " degrees");
+  }
   return angles;
 }
 
@@ -77,7 +89,7 @@ std::shared_ptr<const EditOperator> read_operator(const FieldReader& reader, Ass
   std::vector<std::string_view> names;
   for (const OperatorType& type : operator_types()) names.push_back(type.name);
   const OperatorType& type = operator_types()[reader.required("operator").one_of(names)];
-  static const Value no_options = Value::Object{};
+  const Value no_options = Value::Object{};
   const FieldReader options = reader.has("options")
                                   ? reader.required("options")
                                   : FieldReader(no_options, reader.path() + ".options");

@@ -29,18 +29,4 @@ Value describe_operators() {
   return out;
 }
 
-Extent extent_of(const std::vector<UnitStroke>& strokes, float margin) {
-  Extent e;
-  for (const UnitStroke& stroke : strokes) {
-    for (const UnitPoint& p : stroke) {
-      e.low = e.low.cwiseMin(p.position);
-      e.high = e.high.cwiseMax(p.position);
-    }
-  }
-  if (e.empty()) return e;
-  e.low.array() -= margin;
-  e.high.array() += margin;
-  return e;
-}
-
 }  // namespace normalshop

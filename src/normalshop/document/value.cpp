@@ -1,8 +1,12 @@
 #include "normalshop/document/value.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <unordered_set>
 
 #include <nlohmann/json.hpp>
 
@@ -14,10 +18,48 @@ namespace {
 
 constexpr std::size_t deepest = 100;
 
+/// Walks over a text and leaves its place where messages can find it.
+class Cursor {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  Cursor(const char* at, const char*& place) : at_(at), place_(&place) {}
+  reference operator*() const { return *at_; }
+  Cursor& operator++() {
+    *place_ = ++at_;
+    return *this;
+  }
+  Cursor operator++(int) {
+    const Cursor before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const Cursor& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  const char** place_;
+};
+
+/// Printable ASCII of a text that may be anything, cut to a length that a sentence can hold.
+std::string readable(std::string_view text) {
+  constexpr std::size_t longest = 160;
+  std::string out;
+  for (const char c : text.substr(0, longest)) out += c >= ' ' && c <= '~' ? c : '?';
+  return text.size() > longest ? out + "..." : out;
+}
+
 /// Builds a Value from nlohmann's events, so that depth and repeated names are checked on the way.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  explicit Builder(std::string_view name) : name_(name) {}
+  Builder(std::string_view text, std::string_view name)
+      : text_(text), place_(text.data()), name_(name) {}
+  Cursor begin() { return {text_.data(), place_}; }
+  Cursor end() { return {text_.data() + text_.size(), place_}; }
   Value take() { return std::move(root_); }
 
   bool null() override { return put({}); }
@@ -32,20 +74,22 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool start_array(std::size_t) override { return open(false); }
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
-    Value::Object& fields = open_.back().fields;
-    const auto same = [&](const auto& f) { return f.first == name; };
-    if (std::any_of(fields.begin(), fields.end(), same)) {
-      throw InvalidInput(name_ + ": the field \"" + name + "\" appears twice");
+    Open& object = open_.back();
+    if (!object.names.insert(name).second) {
+      fail("the field \"" + readable(name) + "\" appears twice in one object");
     }
-    fields.emplace_back(std::move(name), Value());
+    object.fields.emplace_back(std::move(name), Value());
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: ..." from "line" on.
-    const std::string_view what = e.what();
-    const std::size_t at = what.find("line");
-    throw InvalidInput(name_ + ": not valid JSON" +
-                       (at == std::string_view::npos ? "" : ", " + std::string(what.substr(at))));
+    // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while parsing
+    // value - invalid literal; last read: 'x'": the part behind the first place names the fault.
+    std::string_view what = e.what();
+    for (const std::string_view mark : {"] ", "column ", ": ", " - "}) {
+      const std::size_t at = what.find(mark);
+      if (at != std::string_view::npos) what.remove_prefix(at + mark.size());
+    }
+    fail("not valid JSON: " + readable(what));
   }
 
  private:
@@ -53,7 +97,12 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     bool is_object;
     Value::Object fields;
     Value::Array items;
+    std::unordered_set<std::string> names;
   };
+  [[noreturn]] void fail(const std::string& what) const {
+    const auto line = 1 + std::count(text_.data(), place_, '\n');
+    throw InvalidInput(name_ + ": line " + std::to_string(line) + ": " + what);
+  }
   bool put(Value value) {
     if (open_.empty()) {
       root_ = std::move(value);
@@ -65,8 +114,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
   bool open(bool is_object) {
-    if (open_.size() >= deepest) throw InvalidInput(name_ + ": nested more than 100 levels deep");
-    open_.push_back({is_object, {}, {}});
+    if (open_.size() >= deepest) fail("nested more than 100 levels deep");
+    open_.push_back({is_object, {}, {}, {}});
     return true;
   }
   bool close() {
@@ -75,6 +124,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return put(done.is_object ? Value(std::move(done.fields)) : Value(std::move(done.items)));
   }
 
+  std::string_view text_;
+  const char* place_;  ///< just read
   std::string name_;
   Value root_;
   std::vector<Open> open_;
@@ -90,13 +141,18 @@ void print_number(double number, std::string& out) {
     out += "null";
     return;
   }
+  std::array<char, 40> buffer;
+  if (std::abs(number) < 1e15 && number == std::trunc(number)) {  // 1000000, not 1e+06
+    const auto whole = static_cast<std::int64_t>(number);
+    out.append(buffer.data(), std::to_chars(buffer.begin(), buffer.end(), whole).ptr);
+    return;
+  }
   // Floats were floats before they became double: print what reads back as the same float.
-  char buffer[40];
-  const auto single = static_cast<float>(number);
+  const auto single = static_cast<float>(std::clamp(number, -3.4e38, 3.4e38));
   const auto end = static_cast<double>(single) == number
-                       ? std::to_chars(buffer, buffer + sizeof(buffer), single)
-                       : std::to_chars(buffer, buffer + sizeof(buffer), number);
-  out.append(buffer, end.ptr);
+                       ? std::to_chars(buffer.begin(), buffer.end(), single)
+                       : std::to_chars(buffer.begin(), buffer.end(), number);
+  out.append(buffer.data(), end.ptr);
 }
 
 bool is_flat(const Value& value) { return value.array() == nullptr && value.object() == nullptr; }
@@ -154,8 +210,13 @@ std::string Value::describe() const {
     return out;
   }
   if (const std::string* t = text()) {
+    // Cut between characters, not within one.
+    std::size_t length = std::min<std::size_t>(t->size(), 60);
+    while (length < t->size() && length > 0 &&
+           (static_cast<unsigned char>((*t)[length]) & 0xC0U) == 0x80U)
+      --length;
     std::string out;
-    print_text(t->size() <= 60 ? *t : t->substr(0, 60) + "...", out);
+    print_text(length == t->size() ? *t : t->substr(0, length) + "...", out);
     return "the text " + out;
   }
   if (const Array* a = array()) return "a list of " + std::to_string(a->size());
@@ -164,8 +225,8 @@ std::string Value::describe() const {
 }
 
 Value parse_json(std::string_view text, std::string_view name) {
-  Builder builder(name);
-  if (!nlohmann::json::sax_parse(text, &builder)) {
+  Builder builder(text, name);
+  if (!nlohmann::json::sax_parse(builder.begin(), builder.end(), &builder)) {
     throw InvalidInput(std::string(name) + ": not valid JSON");
   }
   return builder.take();

@@ -50,13 +50,18 @@ Rect fill_brush(const FilterAreaOptions& options, const OperatorInput& input, Ma
   return pen_height(mask, input.region, input.strokes, brush);
 }
 
-/// The view's rectangle, drawn in by half the feather so that the mask is 0 at its border.
-Stroke view_polygon(const Rect& view, float feather) {
+/// The view's rectangle, drawn in by half the feather so that the mask is 0 at its border; sides
+/// beyond which there is no model have nothing to fade to and lie outside.
+Stroke view_polygon(const Rect& view, const Rect& model, float feather) {
   const float inset = 0.5F * feather;
-  const float x0 = static_cast<float>(view.x0) + inset;
-  const float y0 = static_cast<float>(view.y0) + inset;
-  const float x1 = static_cast<float>(view.x1) - inset;
-  const float y1 = static_cast<float>(view.y1) - inset;
+  const auto side = [&](int at, int surface, float inwards) {
+    const bool cuts = inwards > 0.0F ? surface < at : surface > at;
+    return static_cast<float>(cuts ? at : surface) + inwards * (cuts ? inset : -inset - 4.0F);
+  };
+  const float x0 = side(view.x0, model.x0, 1.0F);
+  const float y0 = side(view.y0, model.y0, 1.0F);
+  const float x1 = side(view.x1, model.x1, -1.0F);
+  const float y1 = side(view.y1, model.y1, -1.0F);
   return {{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}};
 }
 
@@ -66,22 +71,29 @@ void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>&
                 const std::string& path) {
   if (options.area == FilterArea::View) {
     if (!strokes.empty()) {
-      throw InvalidInput(path + ": area \"view\" takes no strokes; use \"brush\" or \"inside\"");
+      throw InvalidInput(path +
+                         " must be left out for the area \"view\"; the areas \"brush\" and "
+                         "\"inside\" take strokes");
     }
     return;
   }
-  if (strokes.empty()) throw InvalidInput(path + ": this area needs at least one stroke");
+  if (strokes.empty()) {
+    throw InvalidInput(path + " must have at least one list of points [x, y] for the area \"" +
+                       std::string(name_of(options.area)) + "\"");
+  }
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     if (options.area == FilterArea::Inside && strokes[i].size() < 3) {
       throw InvalidInput(path + "[" + std::to_string(i) +
-                         "]: needs at least 3 points to enclose an area");
+                         "] must have at least 3 points to enclose an area");
     }
   }
 }
 
 Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes) {
   if (options.area == FilterArea::View) return {};
-  if (options.area == FilterArea::Brush) return extent_of(strokes, 0.6F * options.brush);
+  if (options.area == FilterArea::Brush) {
+    return smooth_extent_of(strokes, 0.5F * options.brush, false);
+  }
   const Extent box = extent_of(strokes, 0.0F);
   const float feather =
       options.feather > 0.0F ? options.feather : feather_share * (box.high - box.low).minCoeff();
@@ -98,7 +110,7 @@ Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, Mas
   const auto side = static_cast<float>(std::min(input.view.width(), input.view.height()));
   const float feather =
       std::min(options.feather > 0.0F ? options.feather : feather_share * side, 0.9F * side);
-  return fill_inside({view_polygon(input.view, feather)}, feather, input.region, mask);
+  return fill_inside({view_polygon(input.view, input.model, feather)}, feather, input.region, mask);
 }
 
 void keep_masked_change(SlopeView source, MaskView mask, SlopeSpan filtered_to_change,

@@ -32,13 +32,16 @@ constexpr auto filter_area_fields() {
   return std::tuple{
       field<Owner, FilterArea>("area", &Owner::area,
                                "The whole view, along the strokes, or inside them"),
-      field<Owner, float>("brush", &Owner::brush, "length", 0.0, 1e6,
-                          "Width of the brush that follows the strokes; needed for area \"brush\""),
+      field<Owner, float>(
+          "brush", &Owner::brush, "length", 0.0, 1e6,
+          "Width of the brush that follows the strokes; above 0 for the area \"brush\""),
       field<Owner, float>("hardness", &Owner::hardness, "1", 0.0, 0.99,
                           "Part of the brush's width at full strength; 0 is softest"),
-      field<Owner, float>("feather", &Owner::feather, "length", 0.0, 1e6,
-                          "Width over which the filter fades in at the border of \"view\" and "
-                          "\"inside\"; 0: 4 % of the area's size")};
+      field<Owner, float>(
+          "feather", &Owner::feather, "length", 0.0, 1e6,
+          "Width over which the filter fades in at the border of \"inside\", and of "
+          "\"view\" where the model goes on beyond it; 0: 4 % of the area's "
+          "smaller side")};
 }
 
 /// Throws InvalidInput when strokes and area don't fit.

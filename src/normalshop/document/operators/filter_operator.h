@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "normalshop/core/error.h"
 #include "normalshop/document/operators/filter_area.h"
 #include "normalshop/document/option_values.h"
@@ -15,7 +17,8 @@ struct FilterEditOptions : Options, FilterAreaOptions {
 };
 
 /// An edit that filters the slopes in an area. `Filter` has Options, name, summary, and
-/// apply(source, validity, target, region, options), reach in units of sigma.
+/// check(options, reader), limit(options, largest sigma in pixels) and
+/// apply(source, validity, target, region, options).
 template <class Filter>
 class FilterOperator : public EditOperator {
  public:
@@ -23,13 +26,16 @@ class FilterOperator : public EditOperator {
 
   explicit FilterOperator(const FieldReader& options) : options_(read_options<Options>(options)) {
     if (options_.area == FilterArea::Brush && !(options_.brush > 0.0F)) {
-      options.required("brush").fail("above 0");
+      options.required("brush").fail("a number above 0 for the area \"brush\"");
     }
     Filter::check(options_, options);
   }
   std::string_view name() const override { return Filter::name; }
   Value options() const override { return options_value(options_); }
   bool reads() const override { return true; }
+  StrokeUse stroke_use() const override {
+    return options_.area == FilterArea::Inside ? StrokeUse::Inside : StrokeUse::Path;
+  }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
     check_area(options_, strokes, path);
@@ -40,7 +46,10 @@ class FilterOperator : public EditOperator {
   float reach() const override { return 4.0F * options_.sigma; }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
-    const Options scaled = scale_lengths(options_, 1.0F / input.pixel);
+    Options scaled = scale_lengths(options_, 1.0F / input.pixel);
+    // A Gaussian as wide as that is flat over the chart: wider ones give the same.
+    const int side = std::max(input.source.width(), input.source.height());
+    Filter::limit(scaled, 4.0F * static_cast<float>(side));
     const Rect region = intersect(area_mask(scaled, input, coverage), input.region);
     if (region.empty()) return {};
     Filter::apply(input.source, input.validity, change, region, scaled);

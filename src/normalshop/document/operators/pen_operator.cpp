@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "normalshop/core/error.h"
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/option_values.h"
@@ -10,32 +12,34 @@ namespace {
 class PenOperator : public EditOperator {
  public:
   explicit PenOperator(const FieldReader& options) : options_(read_options<PenOptions>(options)) {
-    try {
-      const Profile probe({options_.profile, options_.closed, options_.curve});
-    } catch (const InvalidInput& e) {
-      throw InvalidInput(options.path() + ": " + e.what());
+    if (options_.profile == ProfileShape::Step && !options_.closed) {
+      throw InvalidInput(options.path() + ".closed must be true for the profile \"step\"");
     }
+    if (options_.profile == ProfileShape::Custom) check_curve(options.required("curve"));
   }
   std::string_view name() const override { return "pen"; }
   Value options() const override { return options_value(options_); }
   bool reads() const override { return false; }
+  StrokeUse stroke_use() const override {
+    return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
+  }
 
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
-    if (strokes.empty()) throw InvalidInput(path + ": the pen needs at least one stroke");
+    if (strokes.empty()) {
+      throw InvalidInput(path + " must have at least one list of points [x, y] for the pen");
+    }
     for (std::size_t i = 0; i < strokes.size(); ++i) {
       if (!options_.closed || strokes[i].size() >= 3) continue;
       throw InvalidInput(path + "[" + std::to_string(i) +
-                         "]: a closed stroke needs at least 3 points");
+                         "] must have at least 3 points, because the pen's stroke is closed");
     }
   }
 
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
-    Extent e = extent_of(strokes, 0.5F * options_.width);
-    if (!options_.smooth) return e;
-    // A smooth curve may swing out between its points.
-    const Vec2f swing = 0.1F * (e.high - e.low);
-    return {e.low - swing, e.high + swing};
+    const float margin = 0.5F * options_.width;
+    return options_.smooth ? smooth_extent_of(strokes, margin, options_.closed)
+                           : extent_of(strokes, margin);
   }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
@@ -44,6 +48,15 @@ class PenOperator : public EditOperator {
   }
 
  private:
+  void check_curve(const FieldReader& curve) const {
+    const std::vector<FieldReader> points = curve.items();
+    if (points.empty()) curve.fail("a list of at least one point [u, height]");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::abs(options_.curve.points()[i].x()) <= 1.0F) continue;
+      points[i].fail("[u, height] with u from -1 to 1");
+    }
+  }
+
   PenOptions options_;
 };
 

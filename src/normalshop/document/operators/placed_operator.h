@@ -11,10 +11,12 @@ namespace normalshop {
 class PlacedOperator : public EditOperator {
  public:
   bool reads() const override { return false; }
+  StrokeUse stroke_use() const override { return StrokeUse::Points; }
 
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
-    if (strokes.empty()) throw InvalidInput(path + ": needs at least one point to be placed at");
+    if (strokes.empty())
+      throw InvalidInput(path + " must have at least one point [x, y] for a copy to be placed at");
   }
 
   /// Copies add up; coverage is that of the strongest.

@@ -13,8 +13,13 @@ struct SharpenFilter {
       "Enhances details (unsharp mask), or edges without the finest noise";
   static void check(const Options& options, const FieldReader& reader) {
     if (options.noise_sigma > 0.0F && options.noise_sigma >= options.sigma) {
-      reader.required("noise_sigma").fail("below sigma");
+      reader.required("noise_sigma").fail("a number below sigma");
     }
+  }
+  static void limit(Options& options, float largest) {
+    if (options.sigma <= largest) return;
+    options.sigma = largest;
+    options.noise_sigma = std::min(options.noise_sigma, 0.5F * largest);
   }
   static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
                     const Options& options) {

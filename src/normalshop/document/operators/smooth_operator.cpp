@@ -11,6 +11,9 @@ struct SmoothFilter {
   static constexpr std::string_view name = "smooth";
   static constexpr std::string_view summary = "Gaussian smoothing of the slopes";
   static void check(const Options&, const FieldReader&) {}
+  static void limit(Options& options, float largest) {
+    options.sigma = std::min(options.sigma, largest);
+  }
   static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
                     const Options& options) {
     smooth(source, validity, target, region, options);

@@ -1,3 +1,5 @@
+#include <array>
+
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/operators/placed_operator.h"
 
@@ -8,13 +10,19 @@ namespace {
 struct StampEditOptions : StampOptions {
   std::string patch;
 
+  static constexpr std::array<std::string_view, 2> required_fields{"patch", "size"};
   static constexpr auto fields() {
+    // A patch's size in pixels means nothing here, so that `size` has no 0.
+    const auto others =
+        std::apply([](auto, auto... rest) { return std::tuple{rest...}; }, StampOptions::fields());
     return std::tuple_cat(
         std::tuple{
             field("patch", &StampEditOptions::patch,
-                  "File of the patch: a tangent-space normal map, green up, its alpha is the "
-                  "opacity; relative to the recipe")},
-        StampOptions::fields());
+                  "File of the patch: a tangent-space normal map, green up, its alpha is "
+                  "the opacity; relative to the recipe"),
+            field<StampEditOptions, float>("size", &StampEditOptions::size, "length", 0.0, 1e6,
+                                           "Width of the patch on the surface; above 0")},
+        others);
   }
 };
 
@@ -24,7 +32,7 @@ class StampOperator : public PlacedOperator {
       : options_(read_options<StampEditOptions>(options)) {
     if (options_.patch.empty()) options.required("patch").fail("the name of a file");
     const FieldReader size = options.required("size");
-    if (options_.size <= 0.0F) size.fail("above 0");
+    if (options_.size <= 0.0F) size.fail("a number above 0");
     for (const std::string_view name : {"scale_x", "scale_y"}) {
       if (options.has(name) && options.required(name).number() == 0.0) {
         options.required(name).fail("a scale that is not 0");

@@ -1,3 +1,5 @@
+#include <array>
+
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/operators/placed_operator.h"
 
@@ -9,6 +11,7 @@ struct TextEditOptions : EmbossOptions {
   std::string text;
   std::string font;
 
+  static constexpr std::array<std::string_view, 1> required_fields{"text"};
   static constexpr auto fields() {
     return std::tuple_cat(
         std::tuple{field("text", &TextEditOptions::text, "What to write; \\n starts a new line"),

@@ -1,0 +1,175 @@
+#include "normalshop/document/surface_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "normalshop/core/error.h"
+
+namespace normalshop {
+
+namespace {
+
+/// Points may lie this many times the view's size from its centre.
+constexpr float farthest = 100.0F;
+
+std::string number_text(float number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", static_cast<double>(number));
+  return text.data();
+}
+
+bool on_surface(const EditingChart& chart, const Vec2f& p) {
+  const int x = static_cast<int>(std::lround(p.x()));
+  const int y = static_cast<int>(std::lround(p.y()));
+  return chart.weight.rect().contains(x, y) && chart.weight(x, y) > 0.0F;
+}
+
+bool any_surface(const EditingChart& chart, const Rect& pixels) {
+  const Rect r = intersect(pixels, chart.weight.rect());
+  for (int y = r.y0; y < r.y1; ++y) {
+    const float* row = chart.weight.row(y);
+    if (std::any_of(row + r.x0, row + std::max(r.x0, r.x1), [](float w) { return w > 0.0F; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Cuts the segment to where it runs through the rectangle; false when it doesn't.
+bool clip(const Rect& rect, Vec2f& a, Vec2f& b) {
+  const Vec2f d = b - a;
+  float from = 0.0F;
+  float to = 1.0F;
+  const auto low = Vec2f(static_cast<float>(rect.x0) - 1.0F, static_cast<float>(rect.y0) - 1.0F);
+  const auto high = Vec2f(static_cast<float>(rect.x1), static_cast<float>(rect.y1));
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    if (d[k] == 0.0F) {
+      if (a[k] < low[k] || a[k] > high[k]) return false;
+      continue;
+    }
+    const float t0 = (low[k] - a[k]) / d[k];
+    const float t1 = (high[k] - a[k]) / d[k];
+    from = std::max(from, std::min(t0, t1));
+    to = std::min(to, std::max(t0, t1));
+  }
+  if (!(from <= to)) return false;
+  b = a + to * d;
+  a += from * d;
+  return true;
+}
+
+bool segment_meets(const EditingChart& chart, Vec2f a, Vec2f b) {
+  if (!clip(chart.weight.rect(), a, b)) return false;
+  const int steps = 1 + static_cast<int>((b - a).norm());
+  for (int k = 0; k <= steps; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(steps);
+    if (on_surface(chart, a + t * (b - a))) return true;
+  }
+  return false;
+}
+
+bool path_meets(const EditingChart& chart, const Stroke& stroke, bool closed) {
+  for (std::size_t i = 0; i + 1 < stroke.size(); ++i) {
+    if (segment_meets(chart, stroke[i].position, stroke[i + 1].position)) return true;
+  }
+  const Vec2f& first = stroke.front().position;
+  const Vec2f& last = stroke.back().position;
+  return on_surface(chart, last) || (closed && segment_meets(chart, last, first));
+}
+
+struct Crossing {
+  float x;
+  int winding;
+};
+
+/// Does the area inside a polygon (winding number not 0) hold any surface?
+bool inside_meets(const EditingChart& chart, const Stroke& polygon) {
+  std::vector<Crossing> crossings;
+  for (int y = 0; y < chart.weight.height(); ++y) {
+    crossings.clear();
+    const auto line = static_cast<float>(y);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2f& a = polygon[i].position;
+      const Vec2f& b = polygon[(i + 1) % polygon.size()].position;
+      if ((a.y() > line) == (b.y() > line)) continue;
+      const float t = (line - a.y()) / (b.y() - a.y());
+      crossings.push_back({a.x() + t * (b.x() - a.x()), b.y() > a.y() ? 1 : -1});
+    }
+    std::sort(crossings.begin(), crossings.end(),
+              [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+    int winding = 0;
+    for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+      winding += crossings[i].winding;
+      if (winding == 0) continue;
+      const auto pixel = [&](float x) {
+        return static_cast<int>(std::ceil(std::clamp(x, -1.0F, 1e6F)));
+      };
+      if (any_surface(chart, {pixel(crossings[i].x), y, pixel(crossings[i + 1].x), y + 1})) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool copy_meets(const EditingChart& chart, const EditOperator& operation, const UnitPoint& point) {
+  return any_surface(chart, pixel_rect(chart.grid, operation.extent({{point}})));
+}
+
+}  // namespace
+
+void fail_off_surface(const std::string& field, const Extent& model) {
+  throw InvalidInput(field +
+                     " lies off the surface that the view shows; points are in object units from "
+                     "the view's centre, x right and y up, and the model spans x " +
+                     number_text(model.low.x()) + " to " + number_text(model.high.x()) + ", y " +
+                     number_text(model.low.y()) + " to " + number_text(model.high.y()));
+}
+
+void check_near_view(const Edit& edit, const View& view) {
+  const float limit = farthest * std::max(view.width, view.height);
+  for (std::size_t i = 0; i < edit.strokes.size(); ++i) {
+    for (std::size_t j = 0; j < edit.strokes[i].size(); ++j) {
+      if (edit.strokes[i][j].position.cwiseAbs().maxCoeff() <= limit) continue;
+      throw InvalidInput(edit.path + ".strokes[" + std::to_string(i) + "][" + std::to_string(j) +
+                         "] must lie within " + number_text(limit) +
+                         " object units of the centre of the view, which is " +
+                         number_text(view.width) + " wide and " + number_text(view.height) +
+                         " high");
+    }
+  }
+}
+
+void check_on_surface(const Edit& edit, const std::vector<Stroke>& strokes,
+                      const EditingChart& chart, const Rect& region, const Extent& model) {
+  const StrokeUse use = edit.operation->stroke_use();
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    const std::string field = edit.path + ".strokes[" + std::to_string(i) + "]";
+    if (use == StrokeUse::Points) {
+      for (std::size_t j = 0; j < strokes[i].size(); ++j) {
+        if (copy_meets(chart, *edit.operation, edit.strokes[i][j])) continue;
+        fail_off_surface(field + "[" + std::to_string(j) + "]", model);
+      }
+    } else if (!path_meets(chart, strokes[i], use != StrokeUse::Path) &&
+               !(use == StrokeUse::Inside && inside_meets(chart, strokes[i]))) {
+      fail_off_surface(field, model);
+    }
+  }
+  if (strokes.empty() && !any_surface(chart, region)) {
+    throw InvalidInput(edit.path +
+                       ".view must show surface that faces the viewer; \"direction\" points from "
+                       "the surface to the viewer");
+  }
+}
+
+Rect pixel_rect(const ChartGrid& grid, const Extent& extent) {
+  const auto pixel = [](float x) { return static_cast<int>(std::clamp(x, -1e8F, 1e8F)); };
+  const Vec2f low = grid.to_pixel({extent.low.x(), extent.high.y()});
+  const Vec2f high = grid.to_pixel({extent.high.x(), extent.low.y()});
+  return {pixel(std::floor(low.x())), pixel(std::floor(low.y())), pixel(std::ceil(high.x())) + 1,
+          pixel(std::ceil(high.y())) + 1};
+}
+
+}  // namespace normalshop
