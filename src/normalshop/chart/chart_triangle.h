@@ -1,9 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
 #include <Eigen/Geometry>
 
 #include "normalshop/chart/grid.h"
 #include "normalshop/core/normal_map.h"
+#include "normalshop/surface/texel_map.h"
 
 /// A triangle in chart axes, private to floor 4: what its pixels and texels share.
 namespace normalshop {
@@ -15,6 +21,7 @@ struct ChartTriangle {
   Mat3f normals = Mat3f::Zero();   ///< base normals
   Mat3f tangents = Mat3f::Zero();  ///< zero without tangents
   float sign = 1.0F;               ///< of the bitangent
+  Mat3f node = Mat3f::Identity();  ///< Mesh::node_frame()
 
   static Mat3f differences(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     Mat3f m;
@@ -27,36 +34,83 @@ struct ChartTriangle {
   void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
     const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
     const View& view = grid.view;
+    const Vec3u& index = mesh.triangles[triangle];
     points =
-        differences(grid.project(mesh.position(corner)), grid.project(mesh.position(corner + 1)),
-                    grid.project(mesh.position(corner + 2)));
+        differences(grid.project(mesh.positions[index[0]]), grid.project(mesh.positions[index[1]]),
+                    grid.project(mesh.positions[index[2]]));
     normals =
         differences(view.to_chart(mesh.normals[corner]), view.to_chart(mesh.normals[corner + 1]),
                     view.to_chart(mesh.normals[corner + 2]));
+    node = mesh.node_frame(triangle);
     if (mesh.tangents.empty()) return;
     const auto tangent = [&](std::size_t i) {
       return view.to_chart(mesh.tangents[corner + i].head<3>());
     };
     tangents = differences(tangent(0), tangent(1), tangent(2));
-    sign = mesh.tangents[corner].w() < 0.0F ? -1.0F : 1.0F;
+    const float signs =
+        mesh.tangents[corner].w() + mesh.tangents[corner + 1].w() + mesh.tangents[corner + 2].w();
+    sign = signs < 0.0F ? -1.0F : 1.0F;
   }
 
   /// Map space to chart axes at weights (1, b1, b2): columns vT, vB, vN, not normalised, like
-  /// TangentFrame; `normal` = normals * weights.
+  /// frame_at(); `normal` = normals * weights.
   Mat3f frame(const Vec3f& weights, const Vec3f& normal, NormalSpace space,
               const View& view) const {
     Mat3f m;
     if (space == NormalSpace::Tangent) {
-      m.col(0) = tangents * weights;
-      m.col(1) = sign * normal.cross(m.col(0));
+      const Vec3f tangent = tangents * weights;
+      const Vec3f bitangent = sign * normal.cross(tangent);
+      constexpr float smallest = 1e-8F;  // of squared sines and lengths: frame_at()'s
+      const float size = smallest * normal.squaredNorm();
+      const float across = bitangent.squaredNorm();
+      if (!(across > size && across > size * tangent.squaredNorm())) return any_frame(normal);
+      m.col(0) = tangent;
+      m.col(1) = bitangent;
       m.col(2) = normal;
     } else {
       m.row(0) = view.right.transpose();
       m.row(1) = view.up.transpose();
       m.row(2) = view.direction.transpose();
+      if (space == NormalSpace::Object) m *= node;
     }
     return m;
   }
+
+  static Mat3f any_frame(const Vec3f& normal) {
+    Eigen::Index axis = 0;
+    normal.cwiseAbs().minCoeff(&axis);
+    const Vec3f n = normal.isZero() ? Vec3f(Vec3f::UnitZ()) : Vec3f(normal.normalized());
+    Mat3f m;
+    m.col(0) = Vec3f::Unit(axis).cross(n).normalized();
+    m.col(1) = n.cross(m.col(0));
+    m.col(2) = n;
+    return m;
+  }
+};
+
+/// The last triangles that a task used, ready loaded. T: default-constructible with
+/// load(mesh, grid, triangle).
+template <class T>
+class TriangleCache {
+ public:
+  TriangleCache(const Mesh& mesh, const ChartGrid& grid)
+      : mesh_(mesh), grid_(grid), ids_(slots, no_triangle), triangles_(new T[slots]) {}
+
+  const T& get(std::uint32_t triangle) {
+    const std::size_t slot = triangle % slots;
+    if (ids_[slot] != triangle) {
+      triangles_[slot].load(mesh_, grid_, triangle);
+      ids_[slot] = triangle;
+    }
+    return triangles_[slot];
+  }
+
+ private:
+  static constexpr std::size_t slots = 256;
+  const Mesh& mesh_;
+  const ChartGrid& grid_;
+  std::vector<std::uint32_t> ids_;
+  std::unique_ptr<T[]> triangles_;
 };
 
 }  // namespace normalshop

@@ -10,8 +10,10 @@
 
 namespace normalshop {
 
-/// What a stored normal's components refer to. World is object space after the file's node
-/// transforms; meshes are loaded with those applied, so both decode alike.
+struct WrappedTaps;
+
+/// What a stored normal's components refer to. Object is the space of the mesh in its file,
+/// world the same after the file's node transforms (which are applied when a mesh is loaded).
 enum class NormalSpace { Tangent, Object, World };
 constexpr auto names_of(NormalSpace) {
   return std::array<std::string_view, 3>{"tangent", "object", "world"};
@@ -89,6 +91,8 @@ class NormalMap {
     std::bitset<tile_size * tile_size> edited;
   };
   void encode_edits(int y, RawImage& out) const;
+  template <class Code>
+  Vec3f sample_codes(const WrappedTaps& tap) const;
   const Tile* tile(int x, int y) const;
   static std::size_t index_in_tile(int x, int y) {
     return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);

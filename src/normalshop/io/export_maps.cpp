@@ -19,11 +19,6 @@ NormalConvention target_convention(const NormalConvention& own,
   return to;
 }
 
-/// World and object space are one here: meshes are loaded with their node transforms applied.
-bool same_space(NormalSpace a, NormalSpace b) {
-  return (a == NormalSpace::Tangent) == (b == NormalSpace::Tangent);
-}
-
 std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType type) {
   const char* extension = opened.sets[set].tiff   ? "_normal.tif"
                           : type == CodeType::F32 ? "_normal.exr"
@@ -47,7 +42,7 @@ RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportO
   const NormalConvention& own = stored.normals.convention();
   const NormalConvention to = target_convention(own, options.preset);
   const CodeType type = options.type.value_or(opened.sets[set].type);
-  if (same_space(own.space, to.space)) return stored.normals.encode(type, to);
+  if (own.space == to.space) return stored.normals.encode(type, to);
   return convert_space(opened.document.mesh(), stored.texels, stored.normals, to, type);
 }
 

@@ -303,6 +303,7 @@ class Reader {
     }
     if (normals.empty()) model_.has_normals = false;
     if (tangents.empty()) tangents_everywhere_ = false;
+    add_node(for_normals, corners.size() / 3);
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
       const std::array<std::uint32_t, 3> order = {corners[t], corners[t + (mirrored ? 2 : 1)],
                                                   corners[t + (mirrored ? 1 : 2)]};
@@ -318,6 +319,17 @@ class Reader {
                                                  : tangent(tangents, v, linear, mirrored));
       }
     }
+  }
+
+  /// The frame of these triangles' object-space normals; its size does not matter.
+  void add_node(const Eigen::Matrix3d& for_normals, std::size_t triangles) {
+    Mesh& mesh = model_.mesh;
+    const double size = for_normals.cwiseAbs().maxCoeff();
+    const bool usable = size > 0.0 && std::isfinite(size);
+    mesh.nodes.insert(mesh.nodes.end(), triangles,
+                      static_cast<std::uint32_t>(mesh.node_normals.size()));
+    mesh.node_normals.push_back(usable ? Mat3f((for_normals / size).cast<float>())
+                                       : Mat3f(Mat3f::Identity()));
   }
 
   static Eigen::Vector3d vec3(const std::vector<float>& values, std::size_t at) {

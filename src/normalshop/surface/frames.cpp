@@ -83,6 +83,7 @@ Vec3f base_normal_at(const Mesh& mesh, const SurfacePoint& point) {
 
 TangentFrame frame_at(const Mesh& mesh, const SurfacePoint& point, NormalSpace space) {
   TangentFrame frame;
+  if (space == NormalSpace::Object) frame.to_object = mesh.node_frame(point.triangle);
   if (space != NormalSpace::Tangent) return frame;
   assert(mesh.tangents.size() == mesh.corner_count());
   const auto [a, b, c] = corners_of(point);

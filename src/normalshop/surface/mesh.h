@@ -30,6 +30,17 @@ struct Mesh {
   std::vector<std::uint32_t> texture_sets;  ///< per triangle, index into texture_set_names
   std::vector<std::string> texture_set_names;
 
+  /// For object-space maps of files whose nodes are turned or scaled: per triangle, which of
+  /// node_normals takes a node's own normals to this mesh's space (not normalised; the inverse
+  /// transpose of its transform). Both empty: none is needed.
+  std::vector<std::uint32_t> nodes;
+  std::vector<Mat3f> node_normals;
+
+  /// Node space to mesh space for normals of that triangle.
+  Mat3f node_frame(std::size_t triangle) const {
+    return nodes.empty() ? Mat3f(Mat3f::Identity()) : node_normals[nodes[triangle]];
+  }
+
   std::size_t triangle_count() const { return triangles.size(); }
   std::size_t corner_count() const { return 3 * triangles.size(); }
   const Vec3f& position(std::size_t corner) const {

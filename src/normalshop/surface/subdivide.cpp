@@ -77,6 +77,8 @@ Mesh subdivide_once(const Mesh& mesh) {
   result.normals = split_corners(mesh.normals);
   result.uvs = split_corners(mesh.uvs);
   result.tangents = split_corners(mesh.tangents);
+  result.node_normals = mesh.node_normals;
+  for (const std::uint32_t node : mesh.nodes) result.nodes.insert(result.nodes.end(), 4, node);
   for (const std::uint32_t set : mesh.texture_sets) {
     result.texture_sets.insert(result.texture_sets.end(), 4, set);
   }
