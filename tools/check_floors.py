@@ -31,19 +31,18 @@ THIRD_PARTY = {
     "oneapi/": {"core"},
     "hwy/": EVERY_FLOOR,
     "nanoflann": {"rgbn"},
-    "ft2build.h": {"rgbn"},
-    "freetype/": {"rgbn"},
+    "ft2build.h": {"io"},
+    "freetype/": {"io"},
     "embree": {"surface"},
     "nlohmann/": {"document", "io"},
     "sqlite3.h": {"document"},
     "zstd.h": {"document"},
     "OpenImageIO/": {"io"},
     "OpenEXR/": {"io"},
-    "tiny_gltf.h": {"io"},
     "tiny_obj_loader.h": {"io"},
     "CLI/": set(),
     "Q": set(),
-    "stb_": {"io"},
+    "zlib.h": {"io"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')

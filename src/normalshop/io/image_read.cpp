@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <zlib.h>
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
@@ -121,14 +122,24 @@ void check_jpeg_end(Bytes bytes, std::string_view name) {
   throw IoError("the image " + quoted(name) + " is truncated: its end marker is missing");
 }
 
-/// libpng writes its complaints to the terminal; a file that is cut off is told without it.
-void check_png_end(Bytes bytes, std::string_view name) {
+/// libpng writes its complaints to the terminal: a file that is cut off or damaged is told without
+/// it, by the chunks' lengths and checksums.
+void check_png_chunks(Bytes bytes, std::string_view name) {
+  const auto big_endian = [&](std::size_t at) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + byte_at(bytes, at + i);
+    return value;
+  };
   std::size_t at = 8;
   while (at + 12 <= bytes.size()) {
-    std::size_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i) length = length * 256 + byte_at(bytes, at + i);
-    if (starts_with(bytes.subspan(at + 4), "IEND")) return;
+    const std::size_t length = big_endian(at);
     if (length > bytes.size() - at - 12) break;
+    const Bytes checked = bytes.subspan(at + 4, length + 4);  // type and content
+    const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(checked.data()), checked.size());
+    if (sum != big_endian(at + 8 + length)) {
+      throw IoError("the image " + quoted(name) + " is damaged: a checksum in it is wrong");
+    }
+    if (starts_with(checked, "IEND")) return;
     at += 12 + length;
   }
   throw IoError("the image " + quoted(name) + " is truncated: its last chunk is missing");
@@ -189,7 +200,7 @@ RawImage decode(Bytes bytes, std::string_view name) {
   }
   check_header(bytes, format, name);
   if (std::string_view(format) == "jpeg") check_jpeg_end(bytes, name);
-  if (std::string_view(format) == "png") check_png_end(bytes, name);
+  if (std::string_view(format) == "png") check_png_chunks(bytes, name);
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   const auto input = OIIO::ImageInput::create(format);
   OIIO::ImageSpec config;
