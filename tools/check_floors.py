@@ -62,14 +62,16 @@ def floor_error(floor, path, header):
             return f"'{other}' is no floor"
         if other != floor and other not in FLOORS[floor]:
             return f"floor '{floor}' may not include floor '{other}'"
+        if other != floor and "/detail/" in header:
+            return f"headers in detail/ are for floor '{other}' alone"
         return None
     prefix = owner_of(header)
     if prefix is None:
         return None
     if floor not in THIRD_PARTY[prefix]:
         return f"floor '{floor}' does not own this library"
-    if path.suffix == ".h":
-        return "third-party headers stay inside .cpp files"
+    if path.suffix == ".h" and path.parent.name != "detail":
+        return "third-party headers stay inside .cpp files and detail/"
     return None
 
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "normalshop/io/model.h"
-#include "normalshop/io/uri.h"
+#include "normalshop/io/detail/uri.h"
 
 namespace normalshop::test {
 

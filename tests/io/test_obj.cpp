@@ -11,7 +11,7 @@
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/model.h"
-#include "normalshop/io/polygon.h"
+#include "normalshop/io/detail/polygon.h"
 
 namespace normalshop {
 namespace {

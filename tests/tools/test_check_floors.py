@@ -50,6 +50,12 @@ class CheckFloors(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("belongs to no floor", output)
 
+    def test_detail_is_private(self):
+        self.accepted("src/normalshop/io/detail/x.h", "<nlohmann/json.hpp>")
+        self.accepted("src/normalshop/io/x.cpp", '"normalshop/io/detail/y.h"')
+        self.rejected("src/normalshop/io/detail/x.h", "<tbb/task.h>", "does not own")
+        self.rejected("src/normalshop/chart/x.cpp", '"normalshop/core/detail/y.h"', "alone")
+
     def test_third_party_belongs_to_its_owner(self):
         self.rejected("src/normalshop/chart/x.cpp", "<tbb/parallel_for.h>", "does not own")
         self.rejected("src/normalshop/document/x.cpp", "<OpenImageIO/imageio.h>", "does not own")

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "normalshop/io/gltf_file.h"
+#include "normalshop/io/detail/gltf_file.h"
 
 namespace normalshop::gltf {
 

@@ -10,7 +10,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
-#include "normalshop/io/uri.h"
+#include "normalshop/io/detail/uri.h"
 
 namespace normalshop {
 

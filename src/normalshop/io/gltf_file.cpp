@@ -1,11 +1,11 @@
-#include "normalshop/io/gltf_file.h"
+#include "normalshop/io/detail/gltf_file.h"
 
 #include <cmath>
 #include <cstring>
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
-#include "normalshop/io/uri.h"
+#include "normalshop/io/detail/uri.h"
 
 namespace normalshop::gltf {
 

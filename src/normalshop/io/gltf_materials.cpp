@@ -1,10 +1,10 @@
-#include "normalshop/io/gltf_materials.h"
+#include "normalshop/io/detail/gltf_materials.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "normalshop/io/model_source.h"
-#include "normalshop/io/uri.h"
+#include "normalshop/io/detail/model_source.h"
+#include "normalshop/io/detail/uri.h"
 
 namespace normalshop::gltf {
 

@@ -5,9 +5,9 @@
 #include <Eigen/Geometry>
 
 #include "normalshop/core/error.h"
-#include "normalshop/io/gltf_file.h"
-#include "normalshop/io/gltf_materials.h"
-#include "normalshop/io/model_source.h"
+#include "normalshop/io/detail/gltf_file.h"
+#include "normalshop/io/detail/gltf_materials.h"
+#include "normalshop/io/detail/model_source.h"
 
 namespace normalshop {
 

@@ -4,9 +4,9 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
-#include "normalshop/io/gltf_file.h"
-#include "normalshop/io/model_source.h"
-#include "normalshop/io/uri.h"
+#include "normalshop/io/detail/gltf_file.h"
+#include "normalshop/io/detail/model_source.h"
+#include "normalshop/io/detail/uri.h"
 
 namespace normalshop {
 

@@ -7,7 +7,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
-#include "normalshop/io/model_source.h"
+#include "normalshop/io/detail/model_source.h"
 #include "normalshop/surface/vertex_normals.h"
 
 namespace normalshop {

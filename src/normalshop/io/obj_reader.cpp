@@ -9,10 +9,10 @@
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/conventions.h"
+#include "normalshop/io/detail/model_source.h"
+#include "normalshop/io/detail/obj_text.h"
+#include "normalshop/io/detail/polygon.h"
 #include "normalshop/io/image_file.h"
-#include "normalshop/io/model_source.h"
-#include "normalshop/io/obj_text.h"
-#include "normalshop/io/polygon.h"
 
 namespace normalshop {
 

@@ -7,8 +7,8 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
-#include "normalshop/io/model_source.h"
-#include "normalshop/io/obj_text.h"
+#include "normalshop/io/detail/model_source.h"
+#include "normalshop/io/detail/obj_text.h"
 
 namespace normalshop {
 

@@ -1,4 +1,4 @@
-#include "normalshop/io/polygon.h"
+#include "normalshop/io/detail/polygon.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "normalshop/io/uri.h"
+#include "normalshop/io/detail/uri.h"
 
 #include <cctype>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "normalshop/surface/gutter.h"
+#include "normalshop/surface/detail/gutter.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "normalshop/surface/texel_bands.h"
+#include "normalshop/surface/detail/texel_bands.h"
 
 #include <algorithm>
 

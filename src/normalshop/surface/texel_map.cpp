@@ -8,9 +8,9 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
-#include "normalshop/surface/gutter.h"
-#include "normalshop/surface/texel_bands.h"
-#include "normalshop/surface/texel_raster.h"
+#include "normalshop/surface/detail/gutter.h"
+#include "normalshop/surface/detail/texel_bands.h"
+#include "normalshop/surface/detail/texel_raster.h"
 #include "normalshop/surface/topology.h"
 
 namespace normalshop {

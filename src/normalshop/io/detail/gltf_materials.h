@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "normalshop/io/detail/gltf_file.h"
+#include "normalshop/io/model.h"
+
+/// Inside the io floor: which materials of a glTF file share an atlas.
+namespace normalshop::gltf {
+
+/// KHR_texture_transform: uv' = offset + rotation * (scale * uv).
+struct UvTransform {
+  std::array<double, 2> offset{0.0, 0.0};
+  double rotation = 0.0;
+  std::array<double, 2> scale{1.0, 1.0};
+
+  bool operator==(const UvTransform&) const = default;
+  bool is_identity() const { return *this == UvTransform{}; }
+  Vec2f apply(const Vec2f& uv) const;
+};
+
+struct UvChoice {
+  int set = 0;
+  UvTransform transform;
+};
+
+/// Texture sets of the materials in the order in which they are asked for.
+class MaterialTable {
+ public:
+  MaterialTable(const File& file, Model& model) : file_(file), model_(model) {}
+  /// Texture set of material -1 (none) or above.
+  std::size_t texture_set(int material);
+  const UvChoice& uv_choice(std::size_t texture_set) const { return choices_[texture_set]; }
+
+ private:
+  struct Texture {
+    std::size_t image;
+    UvChoice uv;
+    float scale;
+  };
+  std::optional<Texture> texture_at(const Json& owner, const char* key, const std::string& where);
+  std::optional<MapSource> source_of(const Texture& texture);
+  std::string identity(std::size_t image) const;
+  std::size_t make(int material);
+  void read_factor(const Json& material, const std::string& where, Vec3f& factor) const;
+  void note(const std::string& sentence);
+
+  const File& file_;
+  Model& model_;
+  std::vector<int> materials_;  ///< parallel to sets_
+  std::vector<std::size_t> sets_;
+  std::vector<std::string> keys_;  ///< by texture set
+  std::vector<UvChoice> choices_;
+};
+
+}  // namespace normalshop::gltf

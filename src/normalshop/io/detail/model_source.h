@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "normalshop/io/model.h"
+
+/// Inside the io floor: what readers and writers of models share.
+namespace normalshop {
+
+enum class ModelFormat { Gltf, Glb, Obj };
+
+/// A model file's content as it was read.
+struct ModelSource {
+  ModelFormat format = ModelFormat::Gltf;
+  std::filesystem::path folder;
+  std::string text;                         ///< glTF: its JSON; OBJ: the whole file
+  std::vector<std::string> buffers;         ///< glTF: bytes of each buffer
+  bool flip_v = false;                      ///< read with flipped v
+  std::vector<std::string> material_names;  ///< OBJ: by material index
+  std::vector<std::string> libraries;       ///< OBJ: its .mtl files, as the file names them
+};
+
+/// Unique, non-empty, ASCII letters, digits, "-", "_" and "." only, not starting with ".".
+std::string file_safe_name(const std::string& wanted, const std::vector<TextureSet>& others);
+
+/// Fills normals of corners that have none (zero vectors) from the faces.
+void fill_normals(Mesh& mesh);
+
+/// Copies files of the source's folder beside the written model.
+class Companions {
+ public:
+  Companions(const ModelSource& source, const std::filesystem::path& model_path,
+             const std::map<std::size_t, NormalMapReference>& normal_maps);
+  /// Copies `reference` (a path relative to the source's folder) and returns how the written model
+  /// refers to it: the same, or its bare file name where it leads out of the folder.
+  std::string copy(const std::string& reference);
+  /// Writes bytes instead of copying.
+  std::string write(const std::string& reference, std::string_view bytes);
+
+  WrittenModel result;
+
+ private:
+  std::string place(const std::string& reference) const;
+  bool reserved(const std::filesystem::path& target) const;
+
+  std::filesystem::path source_folder_;
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> reserved_;
+  std::map<std::string, std::string> done_;
+};
+
+WrittenModel write_gltf(const Model& model, const std::filesystem::path& path,
+                        const std::map<std::size_t, NormalMapReference>& normal_maps);
+WrittenModel write_obj(const Model& model, const std::filesystem::path& path,
+                       const std::map<std::size_t, NormalMapReference>& normal_maps);
+
+}  // namespace normalshop
