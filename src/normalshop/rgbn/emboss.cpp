@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "normalshop/core/error.h"
-#include "normalshop/rgbn/polyline_field.h"
+#include "normalshop/rgbn/detail/polyline_field.h"
 
 namespace normalshop {
 

@@ -1,4 +1,4 @@
-#include "normalshop/rgbn/gaussian_kernels.h"
+#include "normalshop/rgbn/detail/gaussian_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normalshop/rgbn/gaussian_kernels.cpp"

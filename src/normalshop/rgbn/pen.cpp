@@ -4,7 +4,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/sample.h"
-#include "normalshop/rgbn/polyline_field.h"
+#include "normalshop/rgbn/detail/polyline_field.h"
 
 namespace normalshop {
 

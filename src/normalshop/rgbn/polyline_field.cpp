@@ -1,4 +1,4 @@
-#include "normalshop/rgbn/polyline_field.h"
+#include "normalshop/rgbn/detail/polyline_field.h"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 
-#include "normalshop/rgbn/polyline_field.h"
+#include "normalshop/rgbn/detail/polyline_field.h"
 
 // From vertices to segments, and the lists that find them again.
 namespace normalshop {

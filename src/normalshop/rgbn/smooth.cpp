@@ -6,7 +6,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
-#include "normalshop/rgbn/gaussian_kernels.h"
+#include "normalshop/rgbn/detail/gaussian_kernels.h"
 
 namespace normalshop {
 
