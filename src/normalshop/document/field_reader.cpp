@@ -21,7 +21,7 @@ const Value& missing_value() {
 
 std::string plain(double number) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", number);
+  std::snprintf(text.data(), text.size(), "%.10g", number);
   return text.data();
 }
 

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""The tables of docs/recipes.md from what the program says of its operators.
+
+    normalshop describe --json | tools/describe_to_markdown.py            prints the tables
+    normalshop describe --json | tools/describe_to_markdown.py --write F  puts them into F
+    tools/describe_to_markdown.py --run PROGRAM --check F                 fails when F is out of date
+
+The tables stand between two marker lines in the file.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+
+BEGIN = "<!-- operators: written by tools/describe_to_markdown.py -->"
+END = "<!-- end of operators -->"
+
+
+def cell(text):
+    return str(text).replace("|", "\\|").replace("\n", " ")
+
+
+def number(value):
+    return f"{value:.10g}"
+
+
+def default_of(field):
+    if field.get("required"):
+        return "required"
+    value = field["default"]
+    if isinstance(value, bool):
+        return "`true`" if value else "`false`"
+    if isinstance(value, (int, float)):
+        return number(value)
+    return "`" + json.dumps(value) + "`"
+
+
+def accepted(field):
+    kind = field["type"]
+    if kind == "name":
+        return ", ".join(f'`"{name}"`' for name in field["names"])
+    if kind == "switch":
+        return "`true`, `false`"
+    if kind == "curve":
+        return "list of `[u, height]`"
+    if "range" in field:
+        low, high = field["range"]
+        unit = {"1": "", "length": ", length"}.get(field.get("unit", ""), ", " + field.get("unit", ""))
+        return f"{number(low)} to {number(high)}{unit}"
+    return kind
+
+
+def table(operator):
+    yield f"### {operator['operator']}"
+    yield ""
+    yield operator["summary"] + "."
+    yield ""
+    yield "Strokes: " + operator["strokes"] + "."
+    yield ""
+    yield "| option | accepted | default | |"
+    yield "| --- | --- | --- | --- |"
+    for field in operator["options"]:
+        yield "| " + " | ".join(
+            cell(c) for c in (f"`{field['name']}`", accepted(field), default_of(field), field["help"])) + " |"
+
+
+def operators_of(described):
+    """`describe` may wrap the list in an object."""
+    return described["operators"] if isinstance(described, dict) else described
+
+
+def tables(described):
+    blocks = ["\n".join(table(operator)) for operator in operators_of(described)]
+    return "\n\n".join(blocks)
+
+
+def replaced(document, text):
+    before, mark, rest = document.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not mark or not end:
+        sys.exit(f"the file has no lines {BEGIN} and {END}")
+    return f"{before}{BEGIN}\n\n{text}\n\n{END}{after}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--run", help="program that prints the JSON; else it is read from stdin")
+    parser.add_argument("--write", metavar="FILE")
+    parser.add_argument("--check", metavar="FILE")
+    arguments = parser.parse_args()
+    source = (
+        subprocess.run([arguments.run], check=True, capture_output=True, text=True).stdout
+        if arguments.run
+        else sys.stdin.read()
+    )
+    text = tables(json.loads(source))
+    path = arguments.write or arguments.check
+    if path is None:
+        print(text)
+        return
+    with open(path, encoding="utf-8") as file:
+        document = file.read()
+    wanted = replaced(document, text)
+    if arguments.write:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(wanted)
+    elif wanted != document:
+        sys.exit(f"{path} does not say what the program says; "
+                 f"run: normalshop describe --json | tools/describe_to_markdown.py --write {path}")
+
+
+if __name__ == "__main__":
+    main()
