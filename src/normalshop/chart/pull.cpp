@@ -97,13 +97,18 @@ void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart
   });
 }
 
+void pull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
+          const PullOptions& options, Rasterizer& rasterizer, EditingChart& chart) {
+  chart.grid = grid;
+  rasterizer.rasterize(mesh, grid, chart.ids);
+  pull_attributes(mesh, storage, chart, options);
+}
+
 EditingChart pull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
                   const PullOptions& options) {
   EditingChart chart;
-  chart.grid = grid;
   Rasterizer rasterizer;
-  rasterizer.rasterize(mesh, grid, chart.ids);
-  pull_attributes(mesh, storage, chart, options);
+  pull(mesh, storage, grid, options, rasterizer, chart);
   return chart;
 }
 

@@ -30,5 +30,8 @@ void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart
 /// Rasterises the grid and pulls.
 EditingChart pull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
                   const PullOptions& options = {});
+/// The same into buffers that are kept from chart to chart. chart.weight is left as it is.
+void pull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
+          const PullOptions& options, Rasterizer& rasterizer, EditingChart& chart);
 
 }  // namespace normalshop

@@ -1,6 +1,7 @@
 #include "normalshop/chart/push.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <vector>
@@ -51,19 +52,16 @@ class SetPush {
   Tally run();
 
  private:
-  using Triangle = ChartTriangle;
+  using Cache = TriangleCache<PushTriangle>;
 
+  bool may_change(std::uint32_t triangle) const;
   void find_candidates();
   void mark_tiles(std::uint32_t triangle);
-  Tally push_tile(int tile);
+  Tally push_tile(int tile, Cache& triangles);
   std::vector<Write> gutter_writes() const;
   std::vector<Write> shared_writes() const;
-  const Triangle* candidate(std::uint32_t triangle) const {
-    const std::uint32_t i = triangle_index_[triangle];
-    return i == no_triangle ? nullptr : &triangles_[i];
-  }
-  Effect effect_at(const Triangle& triangle, const Vec3f& weights, Vec3f& base) const;
-  Vec3f edited(int x, int y, const Triangle& frame, const Vec3f& weights, const Effect& effect,
+  Effect effect_at(const PushTriangle& triangle, const Vec3f& weights, Vec3f& base) const;
+  Vec3f edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights, const Effect& effect,
                const Vec3f& base, Tally& tally) const;
   Tally write(const std::vector<Write>& writes);
 
@@ -73,8 +71,7 @@ class SetPush {
   std::uint32_t index_;
   NormalSpace space_;
   int tile_columns_;
-  std::vector<Triangle> triangles_;            // candidates
-  std::vector<std::uint32_t> triangle_index_;  // per triangle of the mesh: into triangles_
+  std::vector<std::uint8_t> candidate_;  // per triangle of the mesh
   std::vector<std::uint8_t> tile_used_;
 };
 
@@ -85,32 +82,37 @@ SetPush::SetPush(const Mesh& mesh, const EditSampler& sampler, StorageSet& set, 
       index_(index),
       space_(set.normals.convention().space),
       tile_columns_((set.normals.width() + tile_size - 1) / tile_size),
-      triangle_index_(mesh.triangle_count(), no_triangle),
+      candidate_(mesh.triangle_count(), 0),
       tile_used_(static_cast<std::size_t>(tile_columns_ *
                                           ((set.normals.height() + tile_size - 1) / tile_size))) {}
 
-/// Triangles that may hold points that the edit changes.
-void SetPush::find_candidates() {
-  Triangle t;
-  for (std::size_t i = 0; i < mesh_.triangle_count(); ++i) {
-    if (mesh_.texture_sets[i] != index_) continue;
-    const ChartGrid& grid = sampler_.grid();
-    const Vec3f a = grid.project(mesh_.position(3 * i));
-    const Vec3f b = grid.project(mesh_.position(3 * i + 1));
-    const Vec3f c = grid.project(mesh_.position(3 * i + 2));
-    const Vec3f low = a.cwiseMin(b).cwiseMin(c);
-    const Vec3f high = a.cwiseMax(b).cwiseMax(c);
-    if (!sampler_.reaches(low.x(), low.y(), high.x(), high.y())) continue;
-    const auto id = static_cast<std::uint32_t>(i);
-    t.load(mesh_, grid, id);
-    const Vec3f facing = t.normals.row(2).transpose();
-    if (facing[0] <= 0.0F && facing[0] + facing[1] <= 0.0F && facing[0] + facing[2] <= 0.0F) {
-      continue;
-    }
-    triangle_index_[i] = static_cast<std::uint32_t>(triangles_.size());
-    triangles_.push_back(t);
-    mark_tiles(id);
+/// May the triangle hold points that the edit changes?
+bool SetPush::may_change(std::uint32_t triangle) const {
+  if (mesh_.texture_sets[triangle] != index_) return false;
+  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
+  const Vec3f& toward = sampler_.grid().view.direction;
+  if (mesh_.normals[corner].dot(toward) <= 0.0F && mesh_.normals[corner + 1].dot(toward) <= 0.0F &&
+      mesh_.normals[corner + 2].dot(toward) <= 0.0F) {
+    return false;
   }
+  const ChartGrid& grid = sampler_.grid();
+  const Vec3f a = grid.project(mesh_.position(corner));
+  const Vec3f b = grid.project(mesh_.position(corner + 1));
+  const Vec3f c = grid.project(mesh_.position(corner + 2));
+  const Vec3f low = a.cwiseMin(b).cwiseMin(c);
+  const Vec3f high = a.cwiseMax(b).cwiseMax(c);
+  return sampler_.reaches(low.x(), low.y(), high.x(), high.y());
+}
+
+void SetPush::find_candidates() {
+  parallel_for(mesh_.triangle_count(), 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto triangle = static_cast<std::uint32_t>(i);
+      if (!may_change(triangle)) continue;
+      candidate_[i] = 1;
+      mark_tiles(triangle);
+    }
+  });
 }
 
 void SetPush::mark_tiles(std::uint32_t triangle) {
@@ -124,10 +126,10 @@ void SetPush::mark_tiles(std::uint32_t triangle) {
   const Vec2f high = a.cwiseMax(b).cwiseMax(c);
   const auto wrap = [](int v, int n) { return ((v % n) + n) % n; };
   // Whole maps further on come the same texels again.
-  const int x0 = static_cast<int>(std::floor(low.x()));
-  const int y0 = static_cast<int>(std::floor(low.y()));
-  const int x1 = std::min(static_cast<int>(high.x()), x0 + set_.normals.width());
-  const int y1 = std::min(static_cast<int>(high.y()), y0 + set_.normals.height());
+  const int x0 = floor_to_int(low.x());
+  const int y0 = floor_to_int(low.y());
+  const int x1 = std::min(floor_to_int(high.x()), x0 + set_.normals.width());
+  const int y1 = std::min(floor_to_int(high.y()), y0 + set_.normals.height());
   const auto next = [](int v, int n, int w) {  // first texel of the next tile, or of the next map
     return v + std::min(tile_size - w % tile_size, n - w);
   };
@@ -135,22 +137,25 @@ void SetPush::mark_tiles(std::uint32_t triangle) {
     const int wy = wrap(y, set_.normals.height());
     for (int x = x0; x <= x1;) {
       const int wx = wrap(x, set_.normals.width());
-      tile_used_[static_cast<std::size_t>(wy / tile_size * tile_columns_ + wx / tile_size)] = 1;
+      // Several threads may mark one tile; the mark is the same.
+      std::atomic_ref(
+          tile_used_[static_cast<std::size_t>(wy / tile_size * tile_columns_ + wx / tile_size)])
+          .store(1, std::memory_order_relaxed);
       x = next(x, set_.normals.width(), wx);
     }
     y = next(y, set_.normals.height(), wy);
   }
 }
 
-Effect SetPush::effect_at(const Triangle& triangle, const Vec3f& weights, Vec3f& base) const {
+Effect SetPush::effect_at(const PushTriangle& triangle, const Vec3f& weights, Vec3f& base) const {
   const Vec3f point = triangle.points * weights;
   if (!sampler_.active(point.x(), point.y())) return {};
   base = (triangle.normals * weights).normalized();
-  return sampler_.at(point, base);
+  return sampler_.at(triangle, point, base);
 }
 
 /// New map-space normal of a texel whose code refers to `frame` at `weights`.
-Vec3f SetPush::edited(int x, int y, const Triangle& frame, const Vec3f& weights,
+Vec3f SetPush::edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
                       const Effect& effect, const Vec3f& base, Tally& tally) const {
   const Mat3f m = frame.frame(weights, frame.normals * weights, space_, sampler_.grid().view);
   Vec3f before = m * set_.normals.normal(x, y);
@@ -161,7 +166,7 @@ Vec3f SetPush::edited(int x, int y, const Triangle& frame, const Vec3f& weights,
   return to_map(m, after);
 }
 
-Tally SetPush::push_tile(int tile) {
+Tally SetPush::push_tile(int tile, Cache& triangles) {
   Tally tally;
   const int x0 = tile % tile_columns_ * tile_size;
   const int y0 = tile / tile_columns_ * tile_size;
@@ -171,9 +176,7 @@ Tally SetPush::push_tile(int tile) {
     const std::uint32_t* owners = set_.texels.owner().row(y);
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::uint32_t owner = owners[x];
-      if (owner == no_triangle) continue;
-      const Triangle* triangle = candidate(owner);
-      if (triangle == nullptr) continue;
+      if (owner == no_triangle || candidate_[owner] == 0) continue;
       ++tally.visited;
       const TexelAffine& affine = affines[owner];
       Vec2f b = affine.at(static_cast<float>(x), static_cast<float>(y));
@@ -182,23 +185,27 @@ Tally SetPush::push_tile(int tile) {
         b = {p.b1, p.b2};
       }
       const Vec3f weights(1.0F, b.x(), b.y());
+      const PushTriangle& triangle = triangles.get(owner);
       Vec3f base;
-      const Effect effect = effect_at(*triangle, weights, base);
+      const Effect effect = effect_at(triangle, weights, base);
       if (!effect.any()) continue;
-      set_.normals.set_normal(x, y, edited(x, y, *triangle, weights, effect, base, tally));
+      set_.normals.set_normal(x, y, edited(x, y, triangle, weights, effect, base, tally));
     }
   }
   return tally;
 }
 
+/// What body(item, triangles, writes) writes for all items, in their order.
 template <class Item, class Body>
-std::vector<Write> collect(const std::vector<Item>& items, const Body& body) {
+std::vector<Write> collect(const std::vector<Item>& items, const Mesh& mesh, const ChartGrid& grid,
+                           const Body& body) {
   constexpr std::size_t run = 4096;
   std::vector<std::vector<Write>> parts((items.size() + run - 1) / run);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    TriangleCache<PushTriangle> triangles(mesh, grid);
     for (std::size_t part = begin; part < end; ++part) {
       for (std::size_t i = part * run; i < std::min(items.size(), (part + 1) * run); ++i) {
-        body(items[i], parts[part]);
+        body(items[i], triangles, parts[part]);
       }
     }
   });
@@ -210,50 +217,46 @@ std::vector<Write> collect(const std::vector<Item>& items, const Body& body) {
 /// A gutter texel takes the change of the surface point across the seam that it stands for, but its
 /// own details, decoded by the frame of the chart beside it.
 std::vector<Write> SetPush::gutter_writes() const {
-  return collect(set_.texels.gutter(), [&](const GutterTexel& g, std::vector<Write>& out) {
-    const Triangle* source = candidate(g.source.triangle);
-    Triangle other;
-    if (source == nullptr) {
-      // The surface may run on in another texture set.
-      if (mesh_.texture_sets[g.source.triangle] == index_) return;
-      other.load(mesh_, sampler_.grid(), g.source.triangle);
-      source = &other;
+  const auto visit = [&](const GutterTexel& g, Cache& triangles, std::vector<Write>& out) {
+    // The surface may run on in another texture set, whose candidates are not known here.
+    if (mesh_.texture_sets[g.source.triangle] == index_ && candidate_[g.source.triangle] == 0) {
+      return;
     }
     Vec3f base;
-    const Effect effect = effect_at(*source, {1.0F, g.source.b1, g.source.b2}, base);
+    const Effect effect =
+        effect_at(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2}, base);
     if (!effect.any()) return;
-    Triangle frame;
-    frame.load(mesh_, sampler_.grid(), g.owner);
     const int x = static_cast<int>(g.texel) % set_.normals.width();
     const int y = static_cast<int>(g.texel) / set_.normals.width();
     Tally ignored;
-    out.push_back(
-        {g.texel, edited(x, y, frame, {1.0F, g.owner_b1, g.owner_b2}, effect, base, ignored)});
-  });
+    out.push_back({g.texel, edited(x, y, triangles.get(g.owner), {1.0F, g.owner_b1, g.owner_b2},
+                                   effect, base, ignored)});
+  };
+  return collect(set_.texels.gutter(), mesh_, sampler_.grid(), visit);
 }
 
 /// Texels that further triangles cover: where the owner's edit does nothing, the first of them that
 /// the edit reaches decides.
 std::vector<Write> SetPush::shared_writes() const {
-  return collect(set_.texels.shared(), [&](const SharedTexel& s, std::vector<Write>& out) {
-    const Triangle* triangle = candidate(s.triangle);
-    if (triangle == nullptr) return;
+  const auto visit = [&](const SharedTexel& s, Cache& triangles, std::vector<Write>& out) {
+    if (candidate_[s.triangle] == 0) return;
     const int x = static_cast<int>(s.texel) % set_.normals.width();
     const int y = static_cast<int>(s.texel) / set_.normals.width();
-    const SurfacePoint point = set_.texels.surface_point(s.triangle, x, y);
-    Vec3f base;
-    const Vec3f weights(1.0F, point.b1, point.b2);
-    const Effect effect = effect_at(*triangle, weights, base);
-    if (!effect.any()) return;
     const std::uint32_t owner = set_.texels.owner()(x, y);
-    if (const Triangle* first = candidate(owner)) {
+    Vec3f base;
+    if (candidate_[owner] != 0) {
       const SurfacePoint p = set_.texels.surface_point(owner, x, y);
-      Vec3f owner_base;
-      if (effect_at(*first, {1.0F, p.b1, p.b2}, owner_base).any()) return;
+      if (effect_at(triangles.get(owner), {1.0F, p.b1, p.b2}, base).any()) return;
     }
+    const SurfacePoint point = set_.texels.surface_point(s.triangle, x, y);
+    const Vec3f weights(1.0F, point.b1, point.b2);
+    const PushTriangle& triangle = triangles.get(s.triangle);
+    const Effect effect = effect_at(triangle, weights, base);
+    if (!effect.any()) return;
     Tally ignored;
-    out.push_back({s.texel, edited(x, y, *triangle, weights, effect, base, ignored)});
-  });
+    out.push_back({s.texel, edited(x, y, triangle, weights, effect, base, ignored)});
+  };
+  return collect(set_.texels.shared(), mesh_, sampler_.grid(), visit);
 }
 
 Tally SetPush::write(const std::vector<Write>& writes) {
@@ -281,7 +284,8 @@ Tally SetPush::run() {
   std::mutex mutex;
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     Tally local;
-    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i]));
+    Cache triangles(mesh_, sampler_.grid());
+    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i], triangles));
     const std::lock_guard lock(mutex);
     tally.add(local);
   });

@@ -43,9 +43,26 @@ Vec3f ColorMap::texel(int x, int y) const {
 Vec3f ColorMap::sample(const Vec2f& uv) const {
   if (empty()) return factor_;
   const WrappedTaps tap(uv, codes_.width(), codes_.height());
+  if (codes_.type() == CodeType::U8) return sample_bytes(tap).cwiseProduct(factor_);
   const Vec3f upper = texel(tap.x0, tap.y0) * (1.0F - tap.fx) + texel(tap.x1, tap.y0) * tap.fx;
   const Vec3f lower = texel(tap.x0, tap.y1) * (1.0F - tap.fx) + texel(tap.x1, tap.y1) * tap.fx;
   return (upper * (1.0F - tap.fy) + lower * tap.fy).cwiseProduct(factor_);
+}
+
+Vec3f ColorMap::sample_bytes(const WrappedTaps& tap) const {
+  const int channels = codes_.channels();
+  const int step = channels >= 3 ? 1 : 0;
+  const std::uint8_t* upper = codes_.row<std::uint8_t>(tap.y0);
+  const std::uint8_t* lower = codes_.row<std::uint8_t>(tap.y1);
+  const int left = tap.x0 * channels;
+  const int right = tap.x1 * channels;
+  const float* table = to_linear_.data();
+  const auto mean = [&](int c) {
+    const float top = table[upper[left + c]] * (1.0F - tap.fx) + table[upper[right + c]] * tap.fx;
+    const float low = table[lower[left + c]] * (1.0F - tap.fx) + table[lower[right + c]] * tap.fx;
+    return top * (1.0F - tap.fy) + low * tap.fy;
+  };
+  return {mean(0), mean(step), mean(2 * step)};
 }
 
 }  // namespace normalshop

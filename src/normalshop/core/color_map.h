@@ -6,6 +6,8 @@
 
 namespace normalshop {
 
+struct WrappedTaps;
+
 /// An sRGB colour map (or a constant colour, without pixels), read as linear RGB.
 class ColorMap {
  public:
@@ -21,6 +23,7 @@ class ColorMap {
 
  private:
   Vec3f texel(int x, int y) const;
+  Vec3f sample_bytes(const WrappedTaps& tap) const;
 
   RawImage codes_;
   Vec3f factor_ = Vec3f::Ones();

@@ -79,9 +79,34 @@ void NormalMap::read_normals(int y, Vec3f* normals) const {
 
 Vec3f NormalMap::sample(const Vec2f& uv) const {
   const WrappedTaps tap(uv, width(), height());
+  const bool one_tile = (tap.x0 ^ tap.x1) < tile_size && (tap.y0 ^ tap.y1) < tile_size;
+  const bool plain = one_tile && tile(tap.x0, tap.y0) == nullptr && !convention_.two_channel;
+  if (plain && codes_.type() == CodeType::U8) return sample_codes<std::uint8_t>(tap);
+  if (plain && codes_.type() == CodeType::U16) return sample_codes<std::uint16_t>(tap);
   const Vec3f upper = vector(tap.x0, tap.y0) * (1.0F - tap.fx) + vector(tap.x1, tap.y0) * tap.fx;
   const Vec3f lower = vector(tap.x0, tap.y1) * (1.0F - tap.fx) + vector(tap.x1, tap.y1) * tap.fx;
   return upper * (1.0F - tap.fy) + lower * tap.fy;
+}
+
+/// Bilinear over unedited integer codes: the codes' mean decodes to the vectors' mean.
+template <class Code>
+Vec3f NormalMap::sample_codes(const WrappedTaps& tap) const {
+  const int channels = codes_.channels();
+  const Code* upper = codes_.row<Code>(tap.y0);
+  const Code* lower = codes_.row<Code>(tap.y1);
+  const int left = tap.x0 * channels;
+  const int right = tap.x1 * channels;
+  const float w11 = tap.fx * tap.fy;
+  const float w10 = tap.fx - w11;
+  const float w01 = tap.fy - w11;
+  const float w00 = 1.0F - tap.fx - w01;
+  const auto mean = [&](int c) {
+    return w00 * static_cast<float>(upper[left + c]) + w10 * static_cast<float>(upper[right + c]) +
+           w01 * static_cast<float>(lower[left + c]) + w11 * static_cast<float>(lower[right + c]);
+  };
+  const float y = mean(1) * range_.scale + range_.offset;
+  return {mean(0) * range_.scale + range_.offset, convention_.green_down ? -y : y,
+          mean(2) * range_.scale + range_.offset};
 }
 
 bool NormalMap::edited(int x, int y) const {

@@ -35,6 +35,13 @@ T sample_bilinear(const ImageView<T>& image, float x, float y) {
   return top * (1.0F - fy) + bottom * fy;
 }
 
+/// The largest integer not above x, for |x| below 1e9; 0 for anything else.
+inline int floor_to_int(float x) {
+  if (!(std::abs(x) < 1e9F)) return 0;
+  const int i = static_cast<int>(x);
+  return i - (static_cast<float>(i) > x ? 1 : 0);
+}
+
 /// The four texels around a point of a repeating texture and the weights of the second ones. uv (0,
 /// 0) is the corner of the first texel and (1, 1) that of the last.
 struct WrappedTaps {
@@ -46,18 +53,18 @@ struct WrappedTaps {
   float fy;
 
   WrappedTaps(const Vec2f& uv, int width, int height) {
-    const float x = (uv.x() - std::floor(uv.x())) * static_cast<float>(width) - 0.5F;
-    const float y = (uv.y() - std::floor(uv.y())) * static_cast<float>(height) - 0.5F;
-    const float left = std::floor(x);
-    const float top = std::floor(y);
-    fx = x - left;
-    fy = y - top;
-    x0 = static_cast<int>(left);
-    y0 = static_cast<int>(top);
-    x1 = x0 + 1 >= width ? 0 : x0 + 1;
-    y1 = y0 + 1 >= height ? 0 : y0 + 1;
-    if (x0 < 0) x0 = width - 1;
-    if (y0 < 0) y0 = height - 1;
+    split(uv.x(), width, x0, x1, fx);
+    split(uv.y(), height, y0, y1, fy);
+  }
+
+ private:
+  static void split(float u, int size, int& first, int& second, float& fraction) {
+    const float repeat = static_cast<float>(floor_to_int(u));
+    const float at = (u - repeat) * static_cast<float>(size) - 0.5F;
+    const int left = floor_to_int(at);
+    fraction = std::clamp(at - static_cast<float>(left), 0.0F, 1.0F);
+    first = left < 0 ? size - 1 : std::min(left, size - 1);
+    second = left + 1 >= size ? 0 : left + 1;
   }
 };
 
