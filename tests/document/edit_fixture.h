@@ -77,7 +77,8 @@ inline Vec2f plane_point(const NormalMap& map, int x, int y) {
 /// Slope of the bump profile of that height and half width at a signed distance.
 inline float bump_slope(float height, float half_width, float distance) {
   const float u = distance / half_width;
-  return std::abs(u) < 1.0F ? -4.0F * height / half_width * u * (1.0F - u * u) : 0.0F;
+  const float s = 1.0F - u * u;
+  return s > 0.0F ? -6.0F * height / half_width * u * s * s : 0.0F;
 }
 
 /// The mean place of the texels that an edit changed.

@@ -19,9 +19,10 @@ constexpr auto names_of(ProfileShape) {
 /// positive left of an open stroke (as seen, looking along it) and inside a closed one. The largest
 /// height is 1 (bump, step), the deepest valley -1 (crease, scratch).
 ///
-/// h(-1) = 0 and h has slope 0 at both ends. At u = 1 the level is 0 too, except for closed strokes
-/// with Step (1) or Custom: an open stroke must not change the level (thesis 2.4.1). Custom curves
-/// are made to comply: a smooth ramp (open) or a constant (closed) is subtracted.
+/// h(-1) = 0 and h has slope and curvature 0 at both ends (Custom: slope). At u = 1 the level is 0
+/// too, except for closed strokes with Step (1) or Custom: an open stroke must not change the level
+/// (thesis 2.4.1). Custom curves are made to comply: a smooth ramp (open) or a constant (closed) is
+/// subtracted.
 class Profile {
  public:
   struct Options {
