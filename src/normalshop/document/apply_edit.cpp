@@ -62,11 +62,15 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
 }
 
 /// The window that the edit needs. There is nothing to read or write beyond the model, so that a
-/// huge brush or sigma costs no more than the whole model does.
+/// huge brush or sigma costs no more than the whole model does; and rather than let the pixels grow
+/// coarser than the texels, an edit reads less far.
 ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, const Extent& model,
                       const Mesh& mesh, const StorageAtlas& storage) {
   const float pixel = texel_pixel_size(mesh, storage, view, extent.low, extent.high);
-  const Extent read = intersect(widened(extent, edit.operation->reach()), model);
+  const Vec2f spare =
+      0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
+  const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach());
+  const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, model);
   const Extent window = widened(read, 4.0F * pixel);
   try {
     return make_grid(view, pixel, window.low, window.high);
