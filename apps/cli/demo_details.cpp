@@ -37,6 +37,7 @@ Jet repeat(const Jet& angle, float count, float shift) {
 
 /// Rows of snail curls around the crown.
 Jet curls(const Place& at) {
+  if (at.hair.value() <= 0.0F) return {};
   constexpr float spacing = 0.165F;
   const JetPoint q = at.p - Vec3f(0.0F, 0.10F, -0.10F);
   const Jet polar = acos((q.y * 0.94F - q.z * 0.34F) / length(q));
@@ -59,6 +60,7 @@ Jet curls(const Place& at) {
 
 /// Rims, a row of beads below, and a zigzag that leaves room in front.
 Jet band(const Place& at) {
+  if (at.level.value() < band_low - 0.06F || at.level.value() > band_high + 0.02F) return {};
   const float middle = 0.5F * (band_low + band_high);
   const Jet rims =
       hill(at.level - (band_low + 0.012F), 0.016F) + hill(at.level - (band_high - 0.004F), 0.016F);
@@ -76,6 +78,7 @@ Jet band(const Place& at) {
 
 /// Heavy lids and the rim of an iris, on the front of the face only.
 Jet eyes(const Place& at) {
+  if (at.p.z.value() <= 0.3F || std::abs(at.p.y.value()) > 0.25F) return {};
   const Jet x = abs(at.p.x) - 0.285F;
   const Jet y = at.p.y - 0.008F - x * 0.12F;
   const Jet almond = max(length(x, y + 0.190F) - 0.256F, length(x, y - 0.250F) - 0.300F);
@@ -89,6 +92,7 @@ Jet eyes(const Place& at) {
 
 /// The rim of the ear and a knob in it.
 Jet ears(const Place& at) {
+  if (std::abs(at.p.x.value()) <= 0.72F) return {};
   const Jet y = at.p.y - 0.06F;
   const Jet z = (at.p.z + 0.07F) * 1.3F;
   const Jet r = length(y * 0.85F, z);
@@ -100,6 +104,7 @@ Jet ears(const Place& at) {
 }
 
 Jet brows_and_mouth(const Place& at) {
+  if (at.p.z.value() <= 0.35F) return {};
   const Jet x = abs(at.p.x);
   const Jet front = smoothstep(0.35F, 0.5F, at.p.z);
   const Jet arc = at.p.y - 0.205F + (x - 0.31F) * (x - 0.31F) * 1.2F;
@@ -114,6 +119,7 @@ Jet brows_and_mouth(const Place& at) {
 
 /// Grooves in nested arcs over cheeks and chin, each with a ridge beside it.
 Jet tattoo(const Place& at) {
+  if (at.p.z.value() <= 0.05F) return {};
   const Jet x = abs(at.p.x);
   const Jet r = length(x - 0.16F, at.p.y + 0.40F);
   const Jet wave = sin((r - 0.25F) * 92.0F);
@@ -140,6 +146,7 @@ Jet crack(const JetPoint& p, float width, std::uint32_t seed) {
 struct Weather {
   Jet height;
   float crack = 0.0F;
+  float grain = 0.0F;
   float pits = 0.0F;
 };
 
@@ -150,11 +157,12 @@ Weather weather(const Place& at) {
   const Jet large = pits(at.p * 11.0F, 0.20F, 31U);
   const Jet small = pits(at.p * 26.0F, 0.30F, 32U) * worn;
   const Jet tiny = pits(at.p * 61.0F, 0.35F, 33U) * worn;
-  const Jet grain = fractal_noise(at.p * 26.0F, 4, 0.62F, 41U);
+  const Jet grain = fractal_noise(at.p * 26.0F, 3, 0.62F, 41U);
   const Jet tool = dishes(scaled(at.p, {10.0F, 17.0F, 10.0F}), 51U);
   w.height = cracks * -0.016F + large * 0.013F + small * 0.0075F + tiny * 0.003F + grain * 0.0011F +
              tool * 0.0065F;
   w.crack = cracks.value();
+  w.grain = grain.value();
   w.pits = -large.value() - 0.6F * small.value();
   return w;
 }
@@ -163,27 +171,31 @@ Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
   return a + std::clamp(t, 0.0F, 1.0F) * (b - a);
 }
 
-/// Sandstone with darker recesses, lichen from above and what is left of the band's paint.
-Vec3f color_of(const Place& at, const Weather& w, float relief) {
-  const float large = fractal_noise(at.p * 1.9F, 4, 0.55F, 61U).value();
-  const float fine = fractal_noise(at.p * 34.0F, 3, 0.7F, 71U).value();
-  Vec3f c = mix({0.36F, 0.31F, 0.245F}, {0.50F, 0.445F, 0.36F}, 0.5F + 0.8F * large);
-  c = mix(c, {0.31F, 0.225F, 0.15F},
-          0.75F * (fractal_noise(at.p * 3.1F, 3, 0.5F, 81U).value() - 0.1F));
+/// What is left of the band's paint, and gold on its ridges.
+Vec3f painted(const Place& at, const Vec3f& stone, float relief) {
   const float wear = fractal_noise(at.p * 6.0F, 4, 0.6F, 91U).value();
   const float paint = at.band.value() * smoothstep(-0.35F, 0.15F, wear + 20.0F * relief).value();
-  c = mix(c, {0.085F, 0.19F, 0.205F}, 0.75F * paint);
-  const float gold =
-      smoothstep(0.004F, 0.011F, relief).value() * (at.band.value() > 0.3F ? 1.0F : 0.0F);
-  c = mix(c, {0.50F, 0.34F, 0.13F}, 0.6F * gold * smoothstep(-0.5F, 0.0F, wear).value());
+  const Vec3f c = mix(stone, {0.085F, 0.19F, 0.205F}, 0.75F * paint);
+  const float ridge = smoothstep(0.004F, 0.011F, relief).value();
+  const float gold = at.band.value() * ridge * smoothstep(-0.5F, 0.0F, wear).value();
+  return mix(c, {0.50F, 0.34F, 0.13F}, 0.6F * gold);
+}
+
+/// Sandstone with darker recesses and lichen from above.
+Vec3f color_of(const Place& at, const Weather& w, float relief) {
+  const float large = fractal_noise(at.p * 1.9F, 3, 0.55F, 61U).value();
+  Vec3f c = mix({0.36F, 0.31F, 0.245F}, {0.50F, 0.445F, 0.36F}, 0.5F + 0.8F * large);
+  c = mix(c, {0.31F, 0.225F, 0.15F},
+          0.75F * (fractal_noise(at.p * 3.1F, 2, 0.5F, 81U).value() - 0.1F));
+  if (at.band.value() > 0.0F) c = painted(at, c, relief);
   const float hair = at.hair.value() * 0.55F;
   c = mix(c, {0.20F, 0.175F, 0.15F}, hair);
   const float recess = smoothstep(-0.001F, 0.016F, -relief).value();
   c = mix(c, {0.10F, 0.08F, 0.06F},
           0.55F * recess + 0.5F * w.crack + 0.4F * std::min(1.0F, w.pits));
-  const float lichen = fractal_noise(at.p * 4.3F, 5, 0.65F, 101U).value() + 0.35F * at.normal.y();
+  const float lichen = fractal_noise(at.p * 4.3F, 4, 0.65F, 101U).value() + 0.35F * at.normal.y();
   c = mix(c, {0.40F, 0.41F, 0.27F}, 0.7F * smoothstep(0.42F, 0.62F, lichen).value());
-  return c * (1.0F + 0.16F * fine);
+  return c * (1.0F + 0.16F * w.grain);
 }
 
 }  // namespace

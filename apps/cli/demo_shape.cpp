@@ -80,7 +80,7 @@ Jet add_mouth(const JetPoint& p, Jet d) {
   });
   d = smooth_max(d, -limb(p, {-0.13F, -0.512F, 0.885F}, {0.13F, -0.512F, 0.885F}, 0.03F, 0.03F),
                  0.03F);
-  return smooth_min(d, sphere(p, {0.0F, -0.84F, 0.60F}, 0.16F), 0.20F);
+  return smooth_min(d, sphere(p, {0.0F, -0.81F, 0.53F}, 0.20F), 0.28F);
 }
 
 Jet add_ears_and_neck(const JetPoint& p, Jet d) {

@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "normalshop/core/random.h"
-
 namespace normalshop::demo {
 
 namespace {
@@ -23,8 +21,13 @@ Cell cell_of(const Vec3f& p) {
   return cell;
 }
 
-std::uint32_t hash3(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t seed) {
-  return hash(x, y, seed + z * 0x9E3779B9U);
+/// Well-mixed bits of a lattice point.
+inline std::uint32_t lattice_hash(std::uint32_t x, std::uint32_t y, std::uint32_t z,
+                                  std::uint32_t seed) {
+  std::uint32_t h = seed * 0x27D4EB2FU + x * 0x9E3779B1U + y * 0x85EBCA77U + z * 0xC2B2AE3DU;
+  h = (h ^ h >> 15U) * 0x2C1B3C6DU;
+  h = (h ^ h >> 12U) * 0x297A2D39U;
+  return h ^ h >> 15U;
 }
 
 /// Ten bits as a number from 0 to 1.
@@ -34,42 +37,60 @@ float part_of(std::uint32_t h, unsigned shift) {
 
 Vec3f vector_of(std::uint32_t h) { return {part_of(h, 0), part_of(h, 10), part_of(h, 20)}; }
 
-Jet compose(const JetPoint& p, float value, const Vec3f& gradient) {
-  const Jet along = p.x * gradient.x() + p.y * gradient.y() + p.z * gradient.z();
-  return along.chain(value, 1.0F);
+template <class T>
+using Lanes = std::array<T, 8>;
+constexpr Lanes<float> offset_x{0, 1, 0, 1, 0, 1, 0, 1};
+constexpr Lanes<float> offset_y{0, 0, 1, 1, 0, 0, 1, 1};
+constexpr Lanes<float> offset_z{0, 0, 0, 0, 1, 1, 1, 1};
+
+inline float component(std::uint32_t h) {
+  return static_cast<float>(static_cast<std::int32_t>(h & 1023U)) * (2.0F / 1023.0F) - 1.0F;
+}
+
+float sum(const Lanes<float>& v) {
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+
+/// f(p) from f's gradient and value at p.
+Jet compose(const JetPoint& p, const Eigen::Array4f& f) {
+  Eigen::Array4f q = p.x.all() * f[0] + p.y.all() * f[1] + p.z.all() * f[2];
+  q[3] = f[3];
+  return q;
 }
 
 }  // namespace
 
+// All eight corners of the cell side by side, for the compiler to vectorise.
 Jet noise(const JetPoint& p, std::uint32_t seed) {
   const Vec3f at = p.value();
   const Cell cell = cell_of(at);
   const Eigen::Array3f f = at - cell.corner;
   const Eigen::Array3f u = f * f * f * (f * (f * 6.0F - 15.0F) + 10.0F);
   const Eigen::Array3f du = 30.0F * f * f * (f * (f - 2.0F) + 1.0F);
-  float value = 0.0F;
-  Vec3f gradient = Vec3f::Zero();
+  alignas(32) Lanes<std::uint32_t> h;
   for (std::uint32_t k = 0; k < 8; ++k) {
-    const std::array<std::uint32_t, 3> o{k & 1U, k >> 1U & 1U, k >> 2U};
-    const std::uint32_t h =
-        hash3(cell.index[0] + o[0], cell.index[1] + o[1], cell.index[2] + o[2], seed);
-    const Vec3f g = 2.0F * vector_of(h) - Vec3f::Ones();
-    Vec3f w;
-    Vec3f dw;
-    Vec3f to;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const bool far = o[static_cast<std::size_t>(i)] != 0;
-      w[i] = far ? u[i] : 1.0F - u[i];
-      dw[i] = far ? du[i] : -du[i];
-      to[i] = far ? f[i] - 1.0F : f[i];
-    }
-    const float d = g.dot(to);
-    const float weight = w.x() * w.y() * w.z();
-    value += weight * d;
-    gradient += weight * g +
-                d * Vec3f(dw.x() * w.y() * w.z(), w.x() * dw.y() * w.z(), w.x() * w.y() * dw.z());
+    h[k] = lattice_hash(cell.index[0] + (k & 1U), cell.index[1] + (k >> 1U & 1U),
+                        cell.index[2] + (k >> 2U), seed);
   }
-  return compose(p, value, gradient);
+  alignas(32) std::array<Lanes<float>, 4> terms;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const float ox = offset_x[k];
+    const float oy = offset_y[k];
+    const float oz = offset_z[k];
+    const float gx = component(h[k]);
+    const float gy = component(h[k] >> 10U);
+    const float gz = component(h[k] >> 20U);
+    const float wx = 1.0F - u[0] + ox * (2.0F * u[0] - 1.0F);
+    const float wy = 1.0F - u[1] + oy * (2.0F * u[1] - 1.0F);
+    const float wz = 1.0F - u[2] + oz * (2.0F * u[2] - 1.0F);
+    const float d = gx * (f[0] - ox) + gy * (f[1] - oy) + gz * (f[2] - oz);
+    const float w = wx * wy * wz;
+    terms[0][k] = w * gx + d * (2.0F * ox - 1.0F) * du[0] * wy * wz;
+    terms[1][k] = w * gy + d * (2.0F * oy - 1.0F) * du[1] * wx * wz;
+    terms[2][k] = w * gz + d * (2.0F * oz - 1.0F) * du[2] * wx * wy;
+    terms[3][k] = w * d;
+  }
+  return compose(p, {sum(terms[0]), sum(terms[1]), sum(terms[2]), sum(terms[3])});
 }
 
 Jet fractal_noise(const JetPoint& p, int octaves, float gain, std::uint32_t seed) {
@@ -86,7 +107,7 @@ Jet fractal_noise(const JetPoint& p, int octaves, float gain, std::uint32_t seed
 
 Jet pits(const JetPoint& p, float share, std::uint32_t seed) {
   const Cell cell = cell_of(p.value());
-  const std::uint32_t h = hash3(cell.index[0], cell.index[1], cell.index[2], seed);
+  const std::uint32_t h = lattice_hash(cell.index[0], cell.index[1], cell.index[2], seed);
   const float lot = part_of(h, 0);
   if (lot >= share) return {};
   const float size = 0.25F + 0.75F * lot / share;
@@ -110,7 +131,7 @@ Jet dishes(const JetPoint& p, std::uint32_t seed) {
     const auto shifted = [&](std::size_t axis) {
       return cell.index[axis] + static_cast<std::uint32_t>(o[static_cast<Eigen::Index>(axis)]);
     };
-    const std::uint32_t h = hash3(shifted(0), shifted(1), shifted(2), seed);
+    const std::uint32_t h = lattice_hash(shifted(0), shifted(1), shifted(2), seed);
     const Vec3f center = cell.corner + o.cast<float>() + vector_of(h);
     const float d = (at - center).squaredNorm();
     if (d < smallest) {
@@ -118,7 +139,8 @@ Jet dishes(const JetPoint& p, std::uint32_t seed) {
       nearest = center;
     }
   }
-  return compose(p, smallest, 2.0F * (at - nearest));
+  const Vec3f gradient = 2.0F * (at - nearest);
+  return compose(p, {gradient.x(), gradient.y(), gradient.z(), smallest});
 }
 
 }  // namespace normalshop::demo
