@@ -60,7 +60,7 @@ float size_scale(const Patch& patch, const StampOptions& o) {
 }
 
 int positions(float step) {
-  return step > 1.001F ? std::min(static_cast<int>(std::ceil(step)), 1024) : 1;
+  return step > 1.001F ? static_cast<int>(std::ceil(std::min(step, 1024.0F))) : 1;
 }
 
 Mapping make_mapping(const Patch& patch, const Vec2f& center, const StampOptions& o) {
