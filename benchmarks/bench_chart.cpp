@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <string>
@@ -37,29 +38,45 @@ constexpr int runs = 11;
 struct Times {
   double median = 0.0;  // milliseconds
   double best = 0.0;
+  double processor = 0.0;  // median, of all threads together: what a busy machine disturbs less
 };
 
-double milliseconds(const std::function<void()>& work) {
+struct Lap {
+  double wall = 0.0;
+  double processor = 0.0;
+  Lap operator+(const Lap& other) const { return {wall + other.wall, processor + other.processor}; }
+};
+
+Lap lap(const std::function<void()>& work) {
+  const std::clock_t used = std::clock();
   const auto begin = std::chrono::steady_clock::now();
   work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
+  const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - begin;
+  return {wall.count(), static_cast<double>(std::clock() - used) * 1e3 / CLOCKS_PER_SEC};
 }
 
-Times summary(std::vector<double> times) {
-  std::sort(times.begin(), times.end());
-  return {times[times.size() / 2], times.front()};
+Times summary(const std::vector<Lap>& laps) {
+  std::vector<double> wall;
+  std::vector<double> processor;
+  for (const Lap& l : laps) {
+    wall.push_back(l.wall);
+    processor.push_back(l.processor);
+  }
+  std::sort(wall.begin(), wall.end());
+  std::sort(processor.begin(), processor.end());
+  return {wall[wall.size() / 2], wall.front(), processor[wall.size() / 2]};
 }
 
 Times measure(const std::function<void()>& work) {
   work();
-  std::vector<double> times;
-  for (int i = 0; i < runs; ++i) times.push_back(milliseconds(work));
+  std::vector<Lap> times;
+  for (int i = 0; i < runs; ++i) times.push_back(lap(work));
   return summary(times);
 }
 
 void row(const char* what, const Times& t, const std::string& remark = {}) {
-  std::printf("  %-34s %8.2f ms  (best %8.2f)  %s\n", what, t.median, t.best, remark.c_str());
+  std::printf("  %-34s %8.2f ms  (best %8.2f, processor %8.2f)  %s\n", what, t.median, t.best,
+              t.processor, remark.c_str());
 }
 
 struct Scene {
@@ -248,13 +265,13 @@ void bench_build(const Mesh& mesh, const StorageAtlas& storage) {
   const float nearest = 2.0F * bounds(mesh).diagonal();
 
   // The stages take turns, so that both sides see the same machine.
-  std::vector<double> raster, trace, ours_total, peer_total, pulled, weighted;
+  std::vector<Lap> raster, trace, ours_total, peer_total, pulled, weighted;
   for (int i = 0; i <= runs; ++i) {
-    const double r = milliseconds([&] { rasterizer.rasterize(mesh, ours.grid, ours.ids); });
-    const double p = milliseconds([&] { pull_attributes(mesh, storage, ours, options); });
-    const double w = milliseconds([&] { compute_weight(ours, effective); });
-    const double t = milliseconds([&] { rays.trace(peer.grid, nearest, peer.ids); });
-    const double look = milliseconds([&] {
+    const Lap r = lap([&] { rasterizer.rasterize(mesh, ours.grid, ours.ids); });
+    const Lap p = lap([&] { pull_attributes(mesh, storage, ours, options); });
+    const Lap w = lap([&] { compute_weight(ours, effective); });
+    const Lap t = lap([&] { rays.trace(peer.grid, nearest, peer.ids); });
+    const Lap look = lap([&] {
       pull_attributes(mesh, storage, peer, options);
       compute_weight(peer, effective);
     });
@@ -288,7 +305,7 @@ void bench_push(const Mesh& mesh, const StorageAtlas& storage, EditMode mode) {
   edit.region = change.rect();
   PushResult result;
   StorageAtlas first = storage;
-  const Times fresh = summary({milliseconds([&] { push(mesh, chart, edit, first); })});
+  const Times fresh = summary({lap([&] { push(mesh, chart, edit, first); })});
   const Times t = measure([&] { result = push(mesh, chart, edit, first); });
   const auto rate = [&](std::size_t texels, double ms) {
     return std::to_string(static_cast<double>(texels) / ms * 1e-3) + " M texels/s";

@@ -70,13 +70,8 @@ bool EditSampler::reaches(float x0, float y0, float x1, float y1) const {
 /// The effective chart's weight around a point, read only from the pixels that show the point's
 /// surface: those whose depth is what the triangle's plane has there, within what the surface may
 /// bend over a pixel. 0 where no pixel around the point does: something nearer hides it.
-float EditSampler::weight_at(const PushTriangle& triangle, const Vec3f& point,
-                             const Vec3f& base) const {
+float EditSampler::weight_at(const PushTriangle& triangle, const Vec3f& point) const {
   const Image<float>& depth = chart_.ids.depth;
-  // 1 + the larger of both slopes, without a root: the base normal's is below 1 / base.z.
-  const float tolerance =
-      chart_.grid.pixel *
-      (1.0F + std::max(triangle.slope, std::min(1.0F / base.z(), 20.0F) - 1.0F));
   const int x0 = floor_to_int(point.x());
   const int y0 = floor_to_int(point.y());
   const float fx = point.x() - static_cast<float>(x0);
@@ -98,7 +93,7 @@ float EditSampler::weight_at(const PushTriangle& triangle, const Vec3f& point,
       const int x = x0 + i;
       if (x < 0 || x >= depth.width()) continue;
       const float expected = row + static_cast<float>(i) * triangle.depth_step.x();
-      if (!(std::abs(depths[x] - expected) <= tolerance)) continue;
+      if (!(std::abs(depths[x] - expected) <= triangle.tolerance)) continue;
       const float share = across[static_cast<std::size_t>(i)] * down[static_cast<std::size_t>(j)];
       sum += share * weights[x];
       total += share;
@@ -157,12 +152,17 @@ float EditSampler::coverage_at(float x, float y) const {
   return std::clamp(sum, 0.0F, 1.0F);
 }
 
-Effect EditSampler::at(const PushTriangle& triangle, const Vec3f& point, const Vec3f& base) const {
+Effect EditSampler::at(const PushTriangle& triangle, const Vec3f& weights, Vec3f& base) const {
   Effect effect;
+  const Vec3f point = triangle.points * weights;
   const float x = point.x();
   const float y = point.y();
-  if (!active(x, y) || !(base.z() > grazing)) return effect;
-  effect.weight = weight_at(triangle, point, base);
+  if (!active(x, y)) return effect;
+  base = triangle.normals * weights;
+  if (!(base.z() > 0.0F && base.z() * base.z() > grazing * grazing * base.squaredNorm())) {
+    return effect;
+  }
+  effect.weight = weight_at(triangle, point);
   if (!(effect.weight > 0.0F)) return effect;
   effect.change = change_at(x, y);
   if (!edit_.coverage.empty()) effect.coverage = coverage_at(x, y);

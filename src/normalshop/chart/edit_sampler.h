@@ -14,7 +14,7 @@ namespace normalshop {
 /// A triangle with what its points need to be found in the chart's depth.
 struct PushTriangle : ChartTriangle {
   Vec2f depth_step = Vec2f::Zero();  ///< of its plane, per pixel; limited on edge-on triangles
-  float slope = 0.0F;                ///< depth per length
+  float tolerance = 0.0F;            ///< depths this far off the plane show it still
 
   void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
     ChartTriangle::load(mesh, grid, triangle);
@@ -30,7 +30,11 @@ struct PushTriangle : ChartTriangle {
       if (!(steep <= limit * facing)) depth_step *= limit * facing / steep;
     }
     if (!depth_step.allFinite()) depth_step.setZero();
-    slope = depth_step.norm() / grid.pixel;
+    // The surface may bend away by as much as the steeper of plane and base normals is steep.
+    const float least =
+        std::min({normals(2, 0), normals(2, 0) + normals(2, 1), normals(2, 0) + normals(2, 2)});
+    const float bent = std::min(1.0F / std::max(least, 1e-6F), steepest) - 1.0F;
+    tolerance = grid.pixel + std::max(depth_step.norm(), bent * grid.pixel);
   }
 };
 
@@ -43,13 +47,6 @@ struct Effect {
   bool any() const {
     return weight > 0.0F && (coverage > 0.0F || change.x() != 0.0F || change.y() != 0.0F);
   }
-  /// The normal in chart axes after the edit. Both normals are unit.
-  Vec3f apply(const Vec3f& before, const Vec3f& base, EditMode mode) const {
-    const Vec2f own = gradient_from_normal(before, base, mode);
-    Vec2f after = own + weight * change;
-    if (coverage > 0.0F) after += weight * coverage * (base_gradient(base, mode) - own);
-    return normal_from_gradient(after, base, mode);
-  }
 };
 
 /// Answers Effect for points in the chart. Blocks of 8 x 8 pixels without effect are skipped.
@@ -61,8 +58,9 @@ class EditSampler {
   EditMode mode() const { return edit_.mode; }
   /// Can any point within this box of chart pixels be changed?
   bool reaches(float x0, float y0, float x1, float y1) const;
-  /// `point`: pixel x, y and depth, on `triangle`; `base`: unit base normal in chart axes.
-  Effect at(const PushTriangle& triangle, const Vec3f& point, const Vec3f& base) const;
+  /// What happens at weights (1, b1, b2) of a triangle. `base` becomes the base normal there, in
+  /// chart axes, not unit, unless nothing happens.
+  Effect at(const PushTriangle& triangle, const Vec3f& weights, Vec3f& base) const;
   /// Cheap first question about a point: is anything active around it?
   bool active(float x, float y) const {
     if (!(x > -1.0F && y > -1.0F && x < right_ && y < bottom_)) return false;
@@ -75,7 +73,7 @@ class EditSampler {
   bool acts(int x, int y) const;
   Vec2f change_at(float x, float y) const;
   float coverage_at(float x, float y) const;
-  float weight_at(const PushTriangle& triangle, const Vec3f& point, const Vec3f& base) const;
+  float weight_at(const PushTriangle& triangle, const Vec3f& point) const;
 
   const EditingChart& chart_;
   const ChartEdit& edit_;

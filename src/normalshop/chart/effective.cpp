@@ -1,6 +1,11 @@
 #include "normalshop/chart/effective.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
 
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
@@ -20,102 +25,213 @@ void for_rows(int height, const Body& body) {
                });
 }
 
-/// How much deeper a plane with that normal gets from one pixel to the next, `along` its image axis
-/// in chart axes. Grazing normals count as 80 degrees.
-float expected_rise(const Vec3f& normal, const Vec2f& along) {
-  const float z = std::max(normal.z(), 0.17F);
-  return -(normal.x() * along.x() + normal.y() * along.y()) / z;
+/// How much deeper the base surface gets from pixel to pixel along a row and down a column, in
+/// pixels. Grazing normals count as 80 degrees. Back faces are marked by `front` 0.
+struct RowSlopes {
+  std::vector<float> right;
+  std::vector<float> down;
+  std::vector<std::uint8_t> front;
+
+  void read(const EditingChart& chart, int y) {
+    const auto width = static_cast<std::size_t>(chart.grid.width());
+    right.resize(width);
+    down.resize(width);
+    front.resize(width);
+    const Vec3f* normals = chart.base_normal.row(y);
+    for (std::size_t x = 0; x < width; ++x) {
+      const float inverse = 1.0F / std::max(normals[x].z(), 0.17F);
+      right[x] = -normals[x].x() * inverse;
+      down[x] = normals[x].y() * inverse;
+      front[x] = normals[x].z() > 0.0F ? 1 : 0;
+    }
+  }
+};
+
+/// Is there a depth step between two neighbouring pixels that see different triangles?
+bool is_step(float z0, float z1, float expected0, float expected1, bool same_side, float inverse) {
+  constexpr float nothing = -std::numeric_limits<float>::infinity();
+  if (!(z0 > nothing) || !(z1 > nothing)) return false;
+  if (!same_side) return true;
+  const float expected = 0.5F * (expected0 + expected1);
+  return std::abs((z1 - z0) * inverse - expected) > 2.0F + std::abs(expected);
 }
 
-/// Depth step between two neighbouring pixels, `along` from the first to the second (chart axes).
-bool is_step(const EditingChart& chart, int x0, int y0, int x1, int y1, const Vec2f& along) {
-  if (chart.ids.triangle(x0, y0) == chart.ids.triangle(x1, y1)) return false;
-  const float z0 = chart.ids.depth(x0, y0);
-  const float z1 = chart.ids.depth(x1, y1);
-  if (!std::isfinite(z0) || !std::isfinite(z1)) return false;
-  const Vec3f& n0 = chart.base_normal(x0, y0);
-  const Vec3f& n1 = chart.base_normal(x1, y1);
-  if ((n0.z() > 0.0F) != (n1.z() > 0.0F)) return true;
-  const float expected = 0.5F * (expected_rise(n0, along) + expected_rise(n1, along));
-  const float rise = (z1 - z0) / chart.grid.pixel;
-  return std::abs(rise - expected) > 2.0F + std::abs(expected);
+/// Depth steps of a run of rows; each row is read once.
+class StepFinder {
+ public:
+  StepFinder(const EditingChart& chart, Image<std::uint8_t>& steps)
+      : chart_(chart), steps_(steps), inverse_(1.0F / chart.grid.pixel) {}
+
+  void find(int first, int last) {
+    for (int y = first; y < last; ++y) std::fill_n(steps_.row(y), steps_.width(), std::uint8_t{0});
+    const int begin = std::max(first - 1, 0);
+    const int end = std::min(last + 1, steps_.height());
+    slopes_.read(chart_, begin);
+    for (int y = begin; y < end; ++y) {
+      if (y >= first && y < last) along(y);
+      if (y + 1 >= end) break;
+      below_.read(chart_, y + 1);
+      down(y, y >= first, y + 1 < last);
+      std::swap(slopes_, below_);
+    }
+  }
+
+ private:
+  void along(int y) {
+    const std::uint32_t* ids = chart_.ids.triangle.row(y);
+    const float* depth = chart_.ids.depth.row(y);
+    std::uint8_t* out = steps_.row(y);
+    for (int x = 0; x + 1 < steps_.width(); ++x) {
+      if (ids[x] == ids[x + 1]) continue;
+      const auto i = static_cast<std::size_t>(x);
+      if (!is_step(depth[x], depth[x + 1], slopes_.right[i], slopes_.right[i + 1],
+                   slopes_.front[i] == slopes_.front[i + 1], inverse_)) {
+        continue;
+      }
+      out[x] = out[x + 1] = 1;
+    }
+  }
+
+  void down(int y, bool mark_upper, bool mark_lower) {
+    const std::uint32_t* ids = chart_.ids.triangle.row(y);
+    const std::uint32_t* ids_below = chart_.ids.triangle.row(y + 1);
+    const float* depth = chart_.ids.depth.row(y);
+    const float* depth_below = chart_.ids.depth.row(y + 1);
+    for (int x = 0; x < steps_.width(); ++x) {
+      if (ids[x] == ids_below[x]) continue;
+      const auto i = static_cast<std::size_t>(x);
+      if (!is_step(depth[x], depth_below[x], slopes_.down[i], below_.down[i],
+                   slopes_.front[i] == below_.front[i], inverse_)) {
+        continue;
+      }
+      if (mark_upper) steps_(x, y) = 1;
+      if (mark_lower) steps_(x, y + 1) = 1;
+    }
+  }
+
+  const EditingChart& chart_;
+  Image<std::uint8_t>& steps_;
+  float inverse_;
+  RowSlopes slopes_;
+  RowSlopes below_;
+};
+
+/// Columns of a row are handled in segments of this many pixels; those without a step near cost
+/// nothing.
+constexpr int segment = 64;
+
+/// Squared distances along each row, for the segments that hold any below the limit.
+struct RowDistances {
+  Image<float> squared;
+  Image<std::uint8_t> used;  ///< per segment and row: `squared` is filled
+
+  RowDistances(const Image<std::uint8_t>& set, int limit)
+      : squared(set.width(), set.height()),
+        used((set.width() + segment - 1) / segment, set.height(), 0) {
+    for_rows(set.height(), [&](int y) { fill(set, limit, y); });
+  }
+
+  void fill(const Image<std::uint8_t>& set, int limit, int y) {
+    const int width = set.width();
+    const std::uint8_t* row = set.row(y);
+    std::uint8_t* active = used.row(y);
+    int last = -1;
+    for (int x = 0; x < width; ++x) {
+      const void* next = std::memchr(row + x, 1, static_cast<std::size_t>(width - x));
+      if (next == nullptr) break;
+      x = static_cast<int>(static_cast<const std::uint8_t*>(next) - row);
+      const int first = std::max(x - limit, std::max(last + 1, 0)) / segment;
+      for (int i = first; i <= std::min(x + limit, width - 1) / segment; ++i) active[i] = 1;
+      last = x;
+    }
+    if (last < 0) return;
+    for (int i = 0; i < used.width(); ++i) {
+      if (active[i] != 0) fill_segment(row, limit, width, i * segment, squared.row(y));
+    }
+  }
+
+  static void fill_segment(const std::uint8_t* row, int limit, int width, int begin, float* out) {
+    const int end = std::min(begin + segment, width);
+    int last = begin - limit;
+    for (int x = std::max(begin - limit, 0); x < begin; ++x) {
+      if (row[x] != 0) last = x;
+    }
+    for (int x = begin; x < end; ++x) {
+      if (row[x] != 0) last = x;
+      out[x] = static_cast<float>(std::min(x - last, limit));
+    }
+    last = end + limit;
+    for (int x = std::min(end + limit, width) - 1; x >= begin; --x) {
+      if (row[x] != 0) last = x;
+      if (x >= end) continue;
+      const float nearest = std::min(out[x], static_cast<float>(last - x));
+      out[x] = nearest * nearest;
+    }
+  }
+};
+
+/// The distances of row y; false, and nothing written, when all are the limit.
+bool segment_distances(const RowDistances& across, int y, int i, int limit, float* out) {
+  const int begin = i * segment;
+  const int count = std::min(segment, across.squared.width() - begin);
+  const auto cap = static_cast<float>(limit);
+  bool any = false;
+  for (int j = std::max(0, y - limit); j <= std::min(across.squared.height() - 1, y + limit); ++j) {
+    if (across.used(i, j) == 0) continue;
+    if (!any) std::fill_n(out, count, cap * cap);
+    any = true;
+    const float* in = across.squared.row(j) + begin;
+    const auto dy = static_cast<float>((y - j) * (y - j));
+    for (int x = 0; x < count; ++x) out[x] = std::min(out[x], in[x] + dy);
+  }
+  for (int x = 0; any && x < count; ++x) out[x] = std::sqrt(out[x]);
+  return any;
 }
 
 }  // namespace
 
 void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps) {
-  const int width = chart.grid.width();
-  const int height = chart.grid.height();
-  steps.resize(width, height);
-  const Vec2f right(1.0F, 0.0F);
-  const Vec2f down(0.0F, -1.0F);
-  for_rows(height, [&](int y) {
-    std::uint8_t* row = steps.row(y);
-    bool before = false;  // step between x - 1 and x
-    for (int x = 0; x < width; ++x) {
-      const bool after = x + 1 < width && is_step(chart, x, y, x + 1, y, right);
-      const bool below = y + 1 < height && is_step(chart, x, y, x, y + 1, down);
-      const bool above = y > 0 && is_step(chart, x, y - 1, x, y, down);
-      row[x] = before || after || below || above ? 1 : 0;
-      before = after;
-    }
-  });
+  steps.resize(chart.grid.width(), chart.grid.height());
+  parallel_for(static_cast<std::size_t>(chart.grid.height()), 64,
+               [&](std::size_t begin, std::size_t end) {
+                 StepFinder(chart, steps).find(static_cast<int>(begin), static_cast<int>(end));
+               });
 }
 
 void distance_to(const Image<std::uint8_t>& set, int limit, MaskImage& distance) {
-  const int width = set.width();
-  const int height = set.height();
-  const auto cap = static_cast<float>(limit);
-  Image<float> across(width, height);  // squared distance along the row
-  std::vector<std::uint8_t> used(static_cast<std::size_t>(height), 0);
-  for_rows(height, [&](int y) {
-    const std::uint8_t* row = set.row(y);
-    float* out = across.row(y);
-    int last = -limit;
-    bool any = false;
-    for (int x = 0; x < width; ++x) {
-      if (row[x] != 0) last = x;
-      any = any || row[x] != 0;
-      out[x] = static_cast<float>(std::min(x - last, limit));
+  const RowDistances across(set, limit);
+  distance.resize(set.width(), set.height());
+  for_rows(set.height(), [&](int y) {
+    for (int i = 0; i < across.used.width(); ++i) {
+      float* out = distance.row(y) + i * segment;
+      if (segment_distances(across, y, i, limit, out)) continue;
+      std::fill_n(out, std::min(segment, set.width() - i * segment), static_cast<float>(limit));
     }
-    used[static_cast<std::size_t>(y)] = any ? 1 : 0;
-    last = width + limit;
-    for (int x = width - 1; x >= 0; --x) {
-      if (row[x] != 0) last = x;
-      out[x] = std::min(out[x], static_cast<float>(last - x));
-      out[x] *= out[x];
-    }
-  });
-  distance.resize(width, height);
-  for_rows(height, [&](int y) {
-    float* out = distance.row(y);
-    std::fill_n(out, width, cap * cap);
-    for (int j = std::max(0, y - limit); j <= std::min(height - 1, y + limit); ++j) {
-      if (used[static_cast<std::size_t>(j)] == 0) continue;
-      const float* in = across.row(j);
-      const auto dy = static_cast<float>((y - j) * (y - j));
-      for (int x = 0; x < width; ++x) out[x] = std::min(out[x], in[x] + dy);
-    }
-    for (int x = 0; x < width; ++x) out[x] = std::sqrt(out[x]);
   });
 }
 
 void compute_weight(EditingChart& chart, const EffectiveOptions& options) {
   const int width = chart.grid.width();
-  const int height = chart.grid.height();
   Image<std::uint8_t> steps;
   find_depth_steps(chart, steps);
   const float falloff = std::max(2.0F, options.step_falloff / chart.grid.pixel);
   const int limit = static_cast<int>(std::ceil(falloff)) + 1;
-  distance_to(steps, limit, chart.weight);
+  const RowDistances across(steps, limit);
+  chart.weight.resize(width, chart.grid.height());
   const float low = std::cos(options.zero_angle * degrees);
   const float high = std::cos(options.full_angle * degrees);
-  for_rows(height, [&](int y) {
-    float* weight = chart.weight.row(y);
-    const Vec3f* normals = chart.base_normal.row(y);
-    for (int x = 0; x < width; ++x) {
-      const float facing = smoothstep(low, high, normals[x].z());
-      weight[x] = facing > 0.0F ? facing * smoothstep(1.0F, falloff + 1.0F, weight[x]) : 0.0F;
+  for_rows(chart.grid.height(), [&](int y) {
+    for (int i = 0; i < across.used.width(); ++i) {
+      const int begin = i * segment;
+      const int count = std::min(segment, width - begin);
+      float* weight = chart.weight.row(y) + begin;
+      const Vec3f* normals = chart.base_normal.row(y) + begin;
+      std::array<float, segment> distance;
+      const bool near = segment_distances(across, y, i, limit, distance.data());
+      for (int x = 0; x < count; ++x) weight[x] = smoothstep(low, high, normals[x].z());
+      for (int x = 0; near && x < count; ++x) {
+        weight[x] *= smoothstep(1.0F, falloff + 1.0F, distance[static_cast<std::size_t>(x)]);
+      }
     }
   });
 }

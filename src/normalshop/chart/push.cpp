@@ -1,6 +1,7 @@
 #include "normalshop/chart/push.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -8,6 +9,8 @@
 
 #include "normalshop/chart/chart_triangle.h"
 #include "normalshop/chart/edit_sampler.h"
+#include "normalshop/chart/texel_batch.h"
+#include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
@@ -16,21 +19,11 @@ namespace {
 
 constexpr int tile_size = NormalMap::tile_size;
 
-/// Solves m x = v for a frame m = (vT, vB, vN) by its cofactors: MikkTSpace's exact inverse.
-Vec3f to_map(const Mat3f& m, const Vec3f& v) {
-  const Vec3f t = m.col(0);
-  const Vec3f b = m.col(1);
-  const Vec3f n = m.col(2);
-  const Vec3f r0 = b.cross(n);
-  const Vec3f x(v.dot(r0), v.dot(n.cross(t)), v.dot(t.cross(b)));
-  return (t.dot(r0) < 0.0F ? Vec3f(-x) : x).normalized();
-}
-
 /// Sums that do not depend on the order of tasks.
 struct Tally {
   std::size_t visited = 0;
   std::size_t changed = 0;
-  float largest = 0.0F;  // squared distance between unit normals
+  float largest = 0.0F;  // 1 - cos of the angle
 
   void add(const Tally& other) {
     visited += other.visited;
@@ -57,12 +50,14 @@ class SetPush {
   bool may_change(std::uint32_t triangle) const;
   void find_candidates();
   void mark_tiles(std::uint32_t triangle);
-  Tally push_tile(int tile, Cache& triangles);
+  Tally push_tile(int tile, Cache& triangles, TexelBatch& batch);
   std::vector<Write> gutter_writes() const;
   std::vector<Write> shared_writes() const;
-  Effect effect_at(const PushTriangle& triangle, const Vec3f& weights, Vec3f& base) const;
+  Vec3f texel_weights(std::uint32_t triangle, int x, int y) const;
+  void add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
+                 const Effect& effect, const Vec3f& base, TexelBatch& batch) const;
   Vec3f edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights, const Effect& effect,
-               const Vec3f& base, Tally& tally) const;
+               const Vec3f& base) const;
   Tally write(const std::vector<Write>& writes);
 
   const Mesh& mesh_;
@@ -147,52 +142,69 @@ void SetPush::mark_tiles(std::uint32_t triangle) {
   }
 }
 
-Effect SetPush::effect_at(const PushTriangle& triangle, const Vec3f& weights, Vec3f& base) const {
-  const Vec3f point = triangle.points * weights;
-  if (!sampler_.active(point.x(), point.y())) return {};
-  base = (triangle.normals * weights).normalized();
-  return sampler_.at(triangle, point, base);
+/// Adds a texel whose code refers to `frame` at `weights`; `base` is the edited surface's.
+void SetPush::add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
+                        const Effect& effect, const Vec3f& base, TexelBatch& batch) const {
+  const View& view = sampler_.grid().view;
+  const Mat3f m = frame.frame(weights, frame.normals * weights, space_, view);
+  Vec3f stored = set_.normals.vector(x, y);
+  // Codes without a direction count as the base normal.
+  if (codes::direction_of(stored).isZero()) {
+    stored = space_ == NormalSpace::Tangent ? Vec3f(Vec3f::UnitZ()) : view.to_object(base);
+  }
+  batch.add(m, base, stored, effect);
 }
 
-/// New map-space normal of a texel whose code refers to `frame` at `weights`.
-Vec3f SetPush::edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
-                      const Effect& effect, const Vec3f& base, Tally& tally) const {
-  const Mat3f m = frame.frame(weights, frame.normals * weights, space_, sampler_.grid().view);
-  Vec3f before = m * set_.normals.normal(x, y);
-  before = before.isZero() ? base : Vec3f(before.normalized());
-  const Vec3f after = effect.apply(before, base, sampler_.mode());
-  ++tally.changed;
-  tally.largest = std::max(tally.largest, (after - before).squaredNorm());
-  return to_map(m, after);
-}
-
-Tally SetPush::push_tile(int tile, Cache& triangles) {
+Tally SetPush::push_tile(int tile, Cache& triangles, TexelBatch& batch) {
   Tally tally;
   const int x0 = tile % tile_columns_ * tile_size;
   const int y0 = tile / tile_columns_ * tile_size;
   const Rect rect = intersect({x0, y0, x0 + tile_size, y0 + tile_size}, set_.texels.owner().rect());
-  const std::vector<TexelAffine>& affines = set_.texels.affines();
   for (int y = rect.y0; y < rect.y1; ++y) {
-    const std::uint32_t* owners = set_.texels.owner().row(y);
+    std::array<int, TexelBatch::capacity> columns{};
+    batch.count = 0;
     for (int x = rect.x0; x < rect.x1; ++x) {
-      const std::uint32_t owner = owners[x];
+      const std::uint32_t owner = set_.texels.owner().row(y)[x];
       if (owner == no_triangle || candidate_[owner] == 0) continue;
       ++tally.visited;
-      const TexelAffine& affine = affines[owner];
-      Vec2f b = affine.at(static_cast<float>(x), static_cast<float>(y));
-      if (affine.wraps) {
-        const SurfacePoint p = set_.texels.surface_point(owner, x, y);
-        b = {p.b1, p.b2};
-      }
-      const Vec3f weights(1.0F, b.x(), b.y());
+      const Vec3f weights = texel_weights(owner, x, y);
       const PushTriangle& triangle = triangles.get(owner);
       Vec3f base;
-      const Effect effect = effect_at(triangle, weights, base);
+      const Effect effect = sampler_.at(triangle, weights, base);
       if (!effect.any()) continue;
-      set_.normals.set_normal(x, y, edited(x, y, triangle, weights, effect, base, tally));
+      columns[static_cast<std::size_t>(batch.count)] = x;
+      add_texel(x, y, triangle, weights, effect, base, batch);
     }
+    apply(sampler_.mode(), batch);
+    for (int i = 0; i < batch.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      set_.normals.set_normal(columns[k], y, batch.result.get(i));
+      tally.largest = std::max(tally.largest, batch.turn[k]);
+    }
+    tally.changed += static_cast<std::size_t>(batch.count);
   }
   return tally;
+}
+
+Vec3f SetPush::texel_weights(std::uint32_t triangle, int x, int y) const {
+  const TexelAffine& affine = set_.texels.affines()[triangle];
+  if (affine.wraps) {
+    const SurfacePoint p = set_.texels.surface_point(triangle, x, y);
+    return {1.0F, p.b1, p.b2};
+  }
+  const float dx = static_cast<float>(x) - affine.x0;
+  const float dy = static_cast<float>(y) - affine.y0;
+  return {1.0F, affine.origin_weights.x() + dx * affine.db_dx.x() + dy * affine.db_dy.x(),
+          affine.origin_weights.y() + dx * affine.db_dx.y() + dy * affine.db_dy.y()};
+}
+
+/// The new normal of a single texel.
+Vec3f SetPush::edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
+                      const Effect& effect, const Vec3f& base) const {
+  TexelBatch batch;
+  add_texel(x, y, frame, weights, effect, base, batch);
+  apply(sampler_.mode(), batch);
+  return batch.result.get(0);
 }
 
 /// What body(item, triangles, writes) writes for all items, in their order.
@@ -224,13 +236,12 @@ std::vector<Write> SetPush::gutter_writes() const {
     }
     Vec3f base;
     const Effect effect =
-        effect_at(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2}, base);
+        sampler_.at(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2}, base);
     if (!effect.any()) return;
     const int x = static_cast<int>(g.texel) % set_.normals.width();
     const int y = static_cast<int>(g.texel) / set_.normals.width();
-    Tally ignored;
     out.push_back({g.texel, edited(x, y, triangles.get(g.owner), {1.0F, g.owner_b1, g.owner_b2},
-                                   effect, base, ignored)});
+                                   effect, base)});
   };
   return collect(set_.texels.gutter(), mesh_, sampler_.grid(), visit);
 }
@@ -246,15 +257,14 @@ std::vector<Write> SetPush::shared_writes() const {
     Vec3f base;
     if (candidate_[owner] != 0) {
       const SurfacePoint p = set_.texels.surface_point(owner, x, y);
-      if (effect_at(triangles.get(owner), {1.0F, p.b1, p.b2}, base).any()) return;
+      if (sampler_.at(triangles.get(owner), {1.0F, p.b1, p.b2}, base).any()) return;
     }
     const SurfacePoint point = set_.texels.surface_point(s.triangle, x, y);
     const Vec3f weights(1.0F, point.b1, point.b2);
     const PushTriangle& triangle = triangles.get(s.triangle);
-    const Effect effect = effect_at(triangle, weights, base);
+    const Effect effect = sampler_.at(triangle, weights, base);
     if (!effect.any()) return;
-    Tally ignored;
-    out.push_back({s.texel, edited(x, y, triangle, weights, effect, base, ignored)});
+    out.push_back({s.texel, edited(x, y, triangle, weights, effect, base)});
   };
   return collect(set_.texels.shared(), mesh_, sampler_.grid(), visit);
 }
@@ -285,7 +295,8 @@ Tally SetPush::run() {
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     Tally local;
     Cache triangles(mesh_, sampler_.grid());
-    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i], triangles));
+    TexelBatch batch;
+    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i], triangles, batch));
     const std::lock_guard lock(mutex);
     tally.add(local);
   });
@@ -304,9 +315,8 @@ PushResult push(const Mesh& mesh, const EditingChart& chart, const ChartEdit& ed
     SetPush set(mesh, sampler, storage.sets[i], static_cast<std::uint32_t>(i));
     tally.add(set.run());
   }
-  const float half_chord = 0.5F * std::sqrt(tally.largest);
-  return {tally.visited, tally.changed,
-          2.0F * std::asin(std::min(1.0F, half_chord)) * 180.0F / 3.14159265F};
+  const float half_sine = std::sqrt(std::min(1.0F, 0.5F * tally.largest));
+  return {tally.visited, tally.changed, 2.0F * std::asin(half_sine) * 180.0F / 3.14159265F};
 }
 
 }  // namespace normalshop
