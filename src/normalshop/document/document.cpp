@@ -3,6 +3,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/document/apply_edit.h"
 #include "normalshop/surface/tangents.h"
+#include "normalshop/surface/topology.h"
 
 namespace normalshop {
 
@@ -16,17 +17,20 @@ Document::Document(Mesh mesh, std::vector<Maps> maps, const Progress& progress)
     progress.at(0.0, "tangents");
     compute_tangents(mesh_);
   }
+  const Topology topology = make_topology(mesh_);
+  seams_ = find_seams(topology).edges;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     progress.at(static_cast<double>(i + 1) / static_cast<double>(maps.size() + 1), "texels");
     const int width = maps[i].normals.width();
     const int height = maps[i].normals.height();
-    storage_.sets.push_back({std::move(maps[i].normals), std::move(maps[i].albedo),
-                             TexelMap(mesh_, static_cast<std::uint32_t>(i), width, height)});
+    storage_.sets.push_back(
+        {std::move(maps[i].normals), std::move(maps[i].albedo),
+         TexelMap(mesh_, topology, static_cast<std::uint32_t>(i), width, height)});
   }
 }
 
 EditReport Document::apply(const Edit& edit) {
-  const EditReport report = apply_edit(edit, mesh_, storage_);
+  const EditReport report = apply_edit(edit, mesh_, seams_, storage_);
   log_.push_back(edit);
   return report;
 }

@@ -6,6 +6,7 @@
 #include "normalshop/chart/storage.h"
 #include "normalshop/core/progress.h"
 #include "normalshop/document/edit.h"
+#include "normalshop/surface/seams.h"
 
 namespace normalshop {
 
@@ -41,6 +42,8 @@ class Document {
 
   const Mesh& mesh() const { return mesh_; }
   const StorageAtlas& storage() const { return storage_; }
+  /// Of the mesh.
+  const std::vector<SeamEdge>& seams() const { return seams_; }
   const std::vector<Edit>& log() const { return log_; }
 
   /// Applies an edit and adds it to the log. Throws InvalidInput when a stroke does not meet the
@@ -50,6 +53,7 @@ class Document {
  private:
   Mesh mesh_;
   StorageAtlas storage_;
+  std::vector<SeamEdge> seams_;
   std::vector<Edit> log_;
 };
 

@@ -51,9 +51,8 @@ std::vector<float> select(const std::vector<float>& all, const std::vector<std::
 void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   Document& document = job.opened.document;
   clock.start("seams");
-  const std::vector<SeamEdge> edges = find_seams(document.mesh()).edges;
   const std::vector<const NormalMap*> maps = maps_of(document);
-  const std::vector<SeamSample> samples = sample_seams(document.mesh(), edges, maps);
+  const std::vector<SeamSample> samples = sample_seams(document.mesh(), document.seams(), maps);
   const std::vector<float> before = seam_angles(document.mesh(), samples, maps);
   clock.start("edits");
   for (const Edit& edit : recipe.edits) {
