@@ -15,6 +15,9 @@
 namespace normalshop {
 
 struct ChartTriangle {
+  /// Sines and lengths below this make a frame whose inverse is noise: frame_at()'s.
+  static constexpr float smallest_sine = 1e-4F;
+
   // Columns: corner 0, corner 1 - corner 0, corner 2 - corner 0, so that M * (1, b1, b2)
   // interpolates.
   Mat3f points = Mat3f::Zero();    ///< pixel x, pixel y, depth
@@ -60,8 +63,7 @@ struct ChartTriangle {
     if (space == NormalSpace::Tangent) {
       const Vec3f tangent = tangents * weights;
       const Vec3f bitangent = sign * normal.cross(tangent);
-      constexpr float smallest = 1e-8F;  // of squared sines and lengths: frame_at()'s
-      const float size = smallest * normal.squaredNorm();
+      const float size = smallest_sine * smallest_sine * normal.squaredNorm();
       const float across = bitangent.squaredNorm();
       if (!(across > size && across > size * tangent.squaredNorm())) return any_frame(normal);
       m.col(0) = tangent;

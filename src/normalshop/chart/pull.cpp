@@ -1,6 +1,8 @@
 #include "normalshop/chart/pull.h"
 
-#include "normalshop/chart/chart_triangle.h"
+#include <algorithm>
+
+#include "normalshop/chart/pixel_row.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
@@ -8,105 +10,114 @@ namespace normalshop {
 namespace {
 
 /// Charts are pulled in squares of this side, which read a small part of the atlas each.
-constexpr int block = 32;
+constexpr int block = PixelRow::capacity;
 
-/// A triangle with everything else that its pixels share.
-struct PixelTriangle : ChartTriangle {
-  std::uint32_t texture_set = 0;
-  Vec2f dx = Vec2f::Zero();  // of the weights of corners 1 and 2, per pixel from corner 0
-  Vec2f dy = Vec2f::Zero();
-  Vec2f uv = Vec2f::Zero();
-  Vec2f uv1 = Vec2f::Zero();  // corner 1 - corner 0
-  Vec2f uv2 = Vec2f::Zero();
-
-  void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle);
-  Vec3f weights(int x, int y) const;
-};
-
-void PixelTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
-  ChartTriangle::load(mesh, grid, triangle);
-  const Vec3f ab = points.col(1);
-  const Vec3f ac = points.col(2);
-  const float area = ab.x() * ac.y() - ac.x() * ab.y();
-  const float inverse = area != 0.0F ? 1.0F / area : 0.0F;
-  dx = {ac.y() * inverse, -ab.y() * inverse};
-  dy = {-ac.x() * inverse, ab.x() * inverse};
-  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-  uv = mesh.uvs[corner];
-  uv1 = mesh.uvs[corner + 1] - uv;
-  uv2 = mesh.uvs[corner + 2] - uv;
-  texture_set = mesh.texture_sets[triangle];
-}
-
-/// (1, b1, b2), pushed back into the triangle: a pixel centre may lie a rounding outside it.
-Vec3f PixelTriangle::weights(int x, int y) const {
-  const float px = static_cast<float>(x) - points(0, 0);
-  const float py = static_cast<float>(y) - points(1, 0);
-  const float b1 = std::clamp(px * dx.x() + py * dy.x(), 0.0F, 1.0F);
-  const float b2 = std::clamp(px * dx.y() + py * dy.y(), 0.0F, 1.0F);
-  const float sum = b1 + b2;
-  return sum > 1.0F ? Vec3f(1.0F, b1 / sum, b2 / sum) : Vec3f(1.0F, b1, b2);
-}
-
-/// The pull of one chart.
+/// The pull of one chart: the work of one task.
 class Pull {
  public:
-  Pull(const StorageAtlas& storage, const PullOptions& options, EditingChart& chart)
-      : storage_(storage), options_(options), chart_(chart) {}
+  Pull(const Mesh& mesh, const StorageAtlas& storage, const PullOptions& options,
+       EditingChart& chart)
+      : storage_(storage), options_(options), chart_(chart), triangles_(mesh, chart.grid) {}
 
-  using Cache = TriangleCache<PixelTriangle>;
-  void fill(const Rect& rect, Cache& triangles) const {
-    for (int y = rect.y0; y < rect.y1; ++y) fill_row(y, rect.x0, rect.x1, triangles);
+  void fill(const Rect& rect) {
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      if (find_runs(y, rect.x0, rect.x1)) {
+        fill_row(y, rect.x0, rect.width());
+      } else {
+        clear_row(y, rect.x0, rect.width());
+      }
+    }
   }
 
  private:
-  void fill_row(int y, int x0, int x1, Cache& triangles) const;
-  void clear(int x, int y) const;
-  void read(const PixelTriangle& triangle, int x, int y) const;
+  struct Run {
+    int begin;
+    int end;
+    std::uint32_t texture_set;
+  };
+
+  bool find_runs(int y, int x0, int x1);
+  void fill_row(int y, int x0, int count);
+  void clear_row(int y, int x0, int count);
+  void read_maps(const Run& run, int x0, int y);
+  Vec3f irregular_detail(std::size_t i) const;
 
   const StorageAtlas& storage_;
   const PullOptions& options_;
   EditingChart& chart_;
+  TriangleCache<PixelTriangle> triangles_;
+  PixelRow row_;
+  std::array<Run, PixelRow::capacity> runs_;
+  std::size_t run_count_ = 0;
 };
 
-void Pull::fill_row(int y, int x0, int x1, Cache& triangles) const {
+/// Pixels that follow each other on one triangle, interpolated; false when there are none.
+bool Pull::find_runs(int y, int x0, int x1) {
   const std::uint32_t* ids = chart_.ids.triangle.row(y);
-  std::uint32_t last = no_triangle;
-  const PixelTriangle* triangle = nullptr;
-  for (int x = x0; x < x1; ++x) {
-    if (ids[x] == no_triangle) {
-      clear(x, y);
-      continue;
+  run_count_ = 0;
+  for (int x = x0; x < x1;) {
+    const int begin = x;
+    const std::uint32_t id = ids[begin];
+    while (x < x1 && ids[x] == id) ++x;
+    std::fill(&row_.seen[static_cast<std::size_t>(begin - x0)],
+              &row_.seen[static_cast<std::size_t>(x - x0)], id == no_triangle ? 0.0F : 1.0F);
+    if (id == no_triangle) continue;
+    const PixelTriangle& triangle = triangles_.get(id);
+    interpolate_run(triangle, x0, y, begin - x0, x - x0, row_);
+    runs_[run_count_++] = {begin - x0, x - x0, triangle.texture_set};
+  }
+  return run_count_ > 0;
+}
+
+void Pull::clear_row(int y, int x0, int count) {
+  const Vec3f zero = Vec3f::Zero();
+  std::fill_n(chart_.base_normal.row(y) + x0, count, zero);
+  if (options_.normals) std::fill_n(chart_.normal.row(y) + x0, count, zero);
+  if (options_.albedo) std::fill_n(chart_.albedo.row(y) + x0, count, zero);
+}
+
+void Pull::fill_row(int y, int x0, int count) {
+  finish_base_normals(count, row_);
+  std::copy_n(row_.base_normals.data(), count, chart_.base_normal.row(y) + x0);
+  if (options_.albedo) {
+    std::fill_n(chart_.albedo.row(y) + x0, count, Vec3f(Vec3f::Zero()));
+  }
+  for (std::size_t i = 0; i < run_count_; ++i) read_maps(runs_[i], x0, y);
+  if (!options_.normals) return;
+  finish_details(count, row_);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    if (row_.regular[i] == 0.0F) row_.details[i] = irregular_detail(i);
+  }
+  std::copy_n(row_.details.data(), count, chart_.normal.row(y) + x0);
+}
+
+void Pull::read_maps(const Run& run, int x0, int y) {
+  const StorageSet& set = storage_.sets[run.texture_set];
+  const bool tangent_space = set.normals.convention().space == NormalSpace::Tangent;
+  Vec3f* albedo = options_.albedo ? chart_.albedo.row(y) + x0 : nullptr;
+  for (int x = run.begin; x < run.end; ++x) {
+    const auto i = static_cast<std::size_t>(x);
+    const Vec2f uv(row_.u[i], row_.v[i]);
+    if (options_.normals) {
+      Vec3f stored = set.normals.sample(uv);
+      if (!tangent_space) {
+        stored = chart_.grid.view.to_chart(stored);
+        row_.sign[i] = 0.0F;
+      }
+      row_.stored.x[i] = stored.x();
+      row_.stored.y[i] = stored.y();
+      row_.stored.z[i] = stored.z();
     }
-    if (ids[x] != last) {
-      last = ids[x];
-      triangle = &triangles.get(last);
-    }
-    read(*triangle, x, y);
+    if (albedo != nullptr) albedo[x] = set.albedo.sample(uv);
   }
 }
 
-void Pull::clear(int x, int y) const {
-  chart_.base_normal(x, y).setZero();
-  if (options_.normals) chart_.normal(x, y).setZero();
-  if (options_.albedo) chart_.albedo(x, y).setZero();
-}
-
-void Pull::read(const PixelTriangle& triangle, int x, int y) const {
-  const Vec3f weights = triangle.weights(x, y);
-  const Vec3f n = triangle.normals * weights;
-  const Vec2f uv = triangle.uv + weights.y() * triangle.uv1 + weights.z() * triangle.uv2;
-  const Vec3f base = n * (1.0F / n.norm());
-  chart_.base_normal(x, y) = base;
-  const StorageSet& set = storage_.sets[triangle.texture_set];
-  if (options_.normals) {
-    const NormalSpace space = set.normals.convention().space;
-    const Vec3f detail =
-        triangle.frame(weights, n, space, chart_.grid.view) * set.normals.sample(uv);
-    const float length = detail.norm();
-    chart_.normal(x, y) = length > 1e-6F ? Vec3f(detail * (1.0F / length)) : base;
-  }
-  if (options_.albedo) chart_.albedo(x, y) = set.albedo.sample(uv);
+/// Where tangents say nothing any frame will do; where the map says nothing, the base normal.
+Vec3f Pull::irregular_detail(std::size_t i) const {
+  const Vec3f n(row_.normal.x[i], row_.normal.y[i], row_.normal.z[i]);
+  const Vec3f stored(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]);
+  const Vec3f detail = row_.sign[i] == 0.0F ? stored : Vec3f(ChartTriangle::any_frame(n) * stored);
+  return detail.norm() > 1e-6F ? Vec3f(detail.normalized()) : row_.base_normals[i];
 }
 
 }  // namespace
@@ -118,15 +129,14 @@ void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart
   chart.base_normal.resize(width, height);
   chart.normal.resize(options.normals ? width : 0, options.normals ? height : 0);
   chart.albedo.resize(options.albedo ? width : 0, options.albedo ? height : 0);
-  const Pull pull(storage, options, chart);
   const int columns = (width + block - 1) / block;
   const int rows = (height + block - 1) / block;
   const auto fill = [&](std::size_t begin, std::size_t end) {
-    Pull::Cache triangles(mesh, chart.grid);
+    Pull pull(mesh, storage, options, chart);
     for (std::size_t i = begin; i < end; ++i) {
       const int x = static_cast<int>(i) % columns * block;
       const int y = static_cast<int>(i) / columns * block;
-      pull.fill(intersect({x, y, x + block, y + block}, chart.ids.triangle.rect()), triangles);
+      pull.fill(intersect({x, y, x + block, y + block}, chart.ids.triangle.rect()));
     }
   };
   parallel_for(static_cast<std::size_t>(columns * rows), 16, fill);

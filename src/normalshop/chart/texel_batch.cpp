@@ -21,28 +21,32 @@ struct V3 {
   V z;
 };
 
-V3 load(const TexelBatch::Vectors& v, std::size_t i) {
+HWY_INLINE V3 load(const TexelBatch::Vectors& v, std::size_t i) {
   const D d;
   return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
 }
 
-V dot(const V3& a, const V3& b) {
+HWY_INLINE V dot(const V3& a, const V3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-V3 scaled(const V3& a, V f) { return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)}; }
+HWY_INLINE V3 scaled(const V3& a, V f) {
+  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
+}
 
-V3 sum(const V3& a, const V3& b) {
+HWY_INLINE V3 sum(const V3& a, const V3& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
 
-V3 cross(const V3& a, const V3& b) {
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
           hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-V3 unit(const V3& a) { return scaled(a, hn::Div(hn::Set(D(), 1.0F), hn::Sqrt(dot(a, a)))); }
+HWY_INLINE V3 unit(const V3& a) {
+  return scaled(a, hn::Div(hn::Set(D(), 1.0F), hn::Sqrt(dot(a, a))));
+}
 
 struct Edit2 {
   V change_x;
@@ -51,13 +55,13 @@ struct Edit2 {
 };
 
 /// Minus the slopes of a unit normal: slope_from_normal().
-void view_slopes(const V3& n, V& x, V& y) {
+HWY_INLINE void view_slopes(const V3& n, V& x, V& y) {
   const V inverse = hn::Div(hn::Set(D(), -1.0F), hn::Max(n.z, hn::Set(D(), min_cosine)));
   x = hn::Mul(n.x, inverse);
   y = hn::Mul(n.y, inverse);
 }
 
-V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) {
+HWY_INLINE V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) {
   V x;
   V y;
   V base_x;
@@ -69,7 +73,7 @@ V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) {
   return unit({hn::Neg(hn::Add(x, moved_x)), hn::Neg(hn::Add(y, moved_y)), hn::Set(D(), 1.0F)});
 }
 
-V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) {
+HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) {
   const V least = hn::Set(D(), min_cosine);
   const V along = dot(before, base);
   const V3 in_plane = sum(before, scaled(base, hn::Neg(along)));

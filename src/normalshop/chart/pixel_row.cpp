@@ -1,0 +1,174 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "normalshop/chart/pixel_row.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target, as Highway asks.
+#include <hwy/highway.h>
+
+#include "normalshop/chart/pixel_row.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace normalshop {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, PixelRow::padding>;
+using V = hn::Vec<D>;
+
+struct V3 {
+  V x;
+  V y;
+  V z;
+};
+
+HWY_INLINE V3 load(const PixelRow::Vectors& v, std::size_t i) {
+  const D d;
+  return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
+}
+
+HWY_INLINE V dot(const V3& a, const V3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+HWY_INLINE V3 scaled(const V3& a, V f) {
+  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
+}
+
+/// Component `k` of what the columns of m stand for, at weights b1 and b2.
+HWY_INLINE V mix(const Mat3f& m, Eigen::Index k, V b1, V b2) {
+  const D d;
+  return hn::Add(hn::Add(hn::Set(d, m(k, 0)), hn::Mul(b1, hn::Set(d, m(k, 1)))),
+                 hn::Mul(b2, hn::Set(d, m(k, 2))));
+}
+
+HWY_INLINE void store_mix(const Mat3f& m, V b1, V b2, std::size_t i, PixelRow::Vectors& out) {
+  const D d;
+  hn::StoreU(mix(m, 0, b1, b2), d, &out.x[i]);
+  hn::StoreU(mix(m, 1, b1, b2), d, &out.y[i]);
+  hn::StoreU(mix(m, 2, b1, b2), d, &out.z[i]);
+}
+
+void interpolate_run(const PixelTriangle& t, int x, int y, int begin, int end, PixelRow& row) {
+  const D d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0F);
+  const float py = static_cast<float>(y) - t.points(1, 0);
+  const V dy1 = hn::Set(d, py * t.dy.x());
+  const V dy2 = hn::Set(d, py * t.dy.y());
+  for (int i = begin; i < end; i += lanes) {
+    const auto k = static_cast<std::size_t>(i);
+    const V px = hn::Sub(hn::Iota(d, static_cast<float>(x + i)), hn::Set(d, t.points(0, 0)));
+    V b1 = hn::Add(hn::Mul(px, hn::Set(d, t.dx.x())), dy1);
+    V b2 = hn::Add(hn::Mul(px, hn::Set(d, t.dx.y())), dy2);
+    // Back into the triangle: a pixel centre may lie a rounding outside it.
+    b1 = hn::Min(hn::Max(b1, zero), one);
+    b2 = hn::Min(hn::Max(b2, zero), one);
+    const V shrink = hn::Div(one, hn::Max(hn::Add(b1, b2), one));
+    b1 = hn::Mul(b1, shrink);
+    b2 = hn::Mul(b2, shrink);
+    store_mix(t.normals, b1, b2, k, row.normal);
+    store_mix(t.tangents, b1, b2, k, row.tangent);
+    hn::StoreU(mix(t.uvs, 0, b1, b2), d, &row.u[k]);
+    hn::StoreU(mix(t.uvs, 1, b1, b2), d, &row.v[k]);
+    hn::StoreU(hn::Set(d, t.sign), d, &row.sign[k]);
+  }
+}
+
+/// Unit vectors where `keep`, else zero.
+HWY_INLINE void store_unit(const V3& v, V length_squared, hn::Mask<D> keep, Vec3f* out) {
+  const D d;
+  const V one = hn::Set(d, 1.0F);
+  const V inverse =
+      hn::IfThenElseZero(keep, hn::Div(one, hn::Sqrt(hn::IfThenElse(keep, length_squared, one))));
+  const auto component = [&](V c) { return hn::IfThenElseZero(keep, hn::Mul(c, inverse)); };
+  hn::StoreInterleaved3(component(v.x), component(v.y), component(v.z), d,
+                        reinterpret_cast<float*>(out));
+}
+
+void base_normals(int count, PixelRow& row) {
+  const D d;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(d)) {
+    const V3 n = load(row.normal, i);
+    const V squared = dot(n, n);
+    const auto keep =
+        hn::And(hn::Gt(hn::Load(d, &row.seen[i]), hn::Zero(d)), hn::Gt(squared, hn::Zero(d)));
+    store_unit(n, squared, keep, &row.base_normals[i]);
+  }
+}
+
+void details(int count, PixelRow& row) {
+  const D d;
+  const V smallest = hn::Set(d, ChartTriangle::smallest_sine * ChartTriangle::smallest_sine);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(d)) {
+    const V3 n = load(row.normal, i);
+    const V3 t = load(row.tangent, i);
+    const V3 stored = load(row.stored, i);
+    const V sign = hn::Load(d, &row.sign[i]);
+    const V3 b = scaled({hn::Sub(hn::Mul(n.y, t.z), hn::Mul(n.z, t.y)),
+                         hn::Sub(hn::Mul(n.z, t.x), hn::Mul(n.x, t.z)),
+                         hn::Sub(hn::Mul(n.x, t.y), hn::Mul(n.y, t.x))},
+                        sign);
+    const auto direct = hn::Eq(sign, hn::Zero(d));
+    const auto mixed = [&](V tc, V bc, V nc, V sc) {
+      const V sum =
+          hn::Add(hn::Add(hn::Mul(tc, stored.x), hn::Mul(bc, stored.y)), hn::Mul(nc, stored.z));
+      return hn::IfThenElse(direct, sc, sum);
+    };
+    const V3 v{mixed(t.x, b.x, n.x, stored.x), mixed(t.y, b.y, n.y, stored.y),
+               mixed(t.z, b.z, n.z, stored.z)};
+    const V size = hn::Mul(smallest, dot(n, n));
+    const V across = dot(b, b);
+    const auto regular =
+        hn::Or(direct, hn::And(hn::Gt(across, size), hn::Gt(across, hn::Mul(size, dot(t, t)))));
+    const V squared = dot(v, v);
+    const auto long_enough = hn::Gt(squared, hn::Set(d, 1e-12F));
+    const auto seen = hn::Gt(hn::Load(d, &row.seen[i]), hn::Zero(d));
+    const auto fine = hn::And(regular, long_enough);
+    hn::Store(hn::IfThenElseZero(hn::Or(fine, hn::Not(seen)), hn::Set(d, 1.0F)), d,
+              &row.regular[i]);
+    store_unit(v, squared, hn::And(fine, seen), &row.details[i]);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace normalshop
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace normalshop {
+
+HWY_EXPORT(interpolate_run);
+HWY_EXPORT(base_normals);
+HWY_EXPORT(details);
+
+void PixelTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
+  ChartTriangle::load(mesh, grid, triangle);
+  const Vec3f ab = points.col(1);
+  const Vec3f ac = points.col(2);
+  const float area = ab.x() * ac.y() - ac.x() * ab.y();
+  const float inverse = area != 0.0F ? 1.0F / area : 0.0F;
+  dx = {ac.y() * inverse, -ab.y() * inverse};
+  dy = {-ac.x() * inverse, ab.x() * inverse};
+  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
+  const auto uv = [&](std::size_t k) {
+    const Vec2f& at = mesh.uvs[corner + k];
+    return Vec3f(at.x(), at.y(), 0.0F);
+  };
+  uvs = differences(uv(0), uv(1), uv(2));
+  texture_set = mesh.texture_sets[triangle];
+}
+
+void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int end,
+                     PixelRow& row) {
+  HWY_DYNAMIC_DISPATCH(interpolate_run)(triangle, x, y, begin, end, row);
+}
+
+void finish_base_normals(int count, PixelRow& row) {
+  HWY_DYNAMIC_DISPATCH(base_normals)(count, row);
+}
+
+void finish_details(int count, PixelRow& row) { HWY_DYNAMIC_DISPATCH(details)(count, row); }
+
+}  // namespace normalshop
+#endif

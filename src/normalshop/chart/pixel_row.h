@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+
+#include "normalshop/chart/chart_triangle.h"
+
+/// Pull's arithmetic for a row of pixels at once, private to floor 4.
+namespace normalshop {
+
+/// A triangle with everything else that its pixels share.
+struct PixelTriangle : ChartTriangle {
+  std::uint32_t texture_set = 0;
+  Vec2f dx = Vec2f::Zero();  ///< of the weights of corners 1 and 2, per pixel from corner 0
+  Vec2f dy = Vec2f::Zero();
+  Mat3f uvs = Mat3f::Zero();  ///< columns like `points`, third row 0
+
+  void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle);
+};
+
+/// Pixels side by side, as rows of components. What is read of a pixel that sees nothing is 0.
+struct PixelRow {
+  static constexpr int capacity = 32;
+  static constexpr int padding = 16;  ///< room for the widest vector past the end
+  using Lane = std::array<float, capacity + padding>;
+  struct Vectors {
+    alignas(64) Lane x{};
+    alignas(64) Lane y{};
+    alignas(64) Lane z{};
+  };
+
+  Vectors normal;           ///< interpolated, not unit
+  Vectors tangent;          ///< likewise
+  alignas(64) Lane sign{};  ///< of the bitangent; 0: `stored` is in chart axes
+  alignas(64) Lane u{};
+  alignas(64) Lane v{};
+  alignas(64) Lane seen{};     ///< 1 or 0
+  Vectors stored;              ///< what the map holds
+  alignas(64) Lane regular{};  ///< 0 where the frame has no inverse
+  std::array<Vec3f, capacity + padding> base_normals;
+  std::array<Vec3f, capacity + padding> details;
+};
+
+/// Interpolates a triangle over pixels `begin` to `end` of the row, whose pixel 0 has chart
+/// coordinates (x, y). May write beyond `end`: runs come from left to right.
+void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int end,
+                     PixelRow& row);
+/// Fills base_normals: unit, or zero where nothing is seen.
+void finish_base_normals(int count, PixelRow& row);
+/// Fills details and regular from `stored`: unit, or zero where nothing is seen.
+void finish_details(int count, PixelRow& row);
+
+}  // namespace normalshop
