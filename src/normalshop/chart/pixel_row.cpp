@@ -131,6 +131,17 @@ void details(int count, PixelRow& row) {
   }
 }
 
+void colors(int count, PixelRow& row) {
+  const D d;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(d)) {
+    const auto seen = hn::Gt(hn::Load(d, &row.seen[i]), hn::Zero(d));
+    const V3 c = load(row.color, i);
+    hn::StoreInterleaved3(hn::IfThenElseZero(seen, c.x), hn::IfThenElseZero(seen, c.y),
+                          hn::IfThenElseZero(seen, c.z), d,
+                          reinterpret_cast<float*>(&row.colors[i]));
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace normalshop
 HWY_AFTER_NAMESPACE();
@@ -141,6 +152,7 @@ namespace normalshop {
 HWY_EXPORT(interpolate_run);
 HWY_EXPORT(base_normals);
 HWY_EXPORT(details);
+HWY_EXPORT(colors);
 
 void PixelTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
   ChartTriangle::load(mesh, grid, triangle);
@@ -167,6 +179,8 @@ void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int
 void finish_base_normals(int count, PixelRow& row) {
   HWY_DYNAMIC_DISPATCH(base_normals)(count, row);
 }
+
+void finish_colors(int count, PixelRow& row) { HWY_DYNAMIC_DISPATCH(colors)(count, row); }
 
 void finish_details(int count, PixelRow& row) { HWY_DYNAMIC_DISPATCH(details)(count, row); }
 

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "normalshop/chart/chart_triangle.h"
+#include "normalshop/core/sample.h"
 
 /// Pull's arithmetic for a row of pixels at once, private to floor 4.
 namespace normalshop {
@@ -20,7 +21,7 @@ struct PixelTriangle : ChartTriangle {
 /// Pixels side by side, as rows of components. What is read of a pixel that sees nothing is 0.
 struct PixelRow {
   static constexpr int capacity = 32;
-  static constexpr int padding = 16;  ///< room for the widest vector past the end
+  static constexpr int padding = sample_padding;  ///< room for the widest vector past the end
   using Lane = std::array<float, capacity + padding>;
   struct Vectors {
     alignas(64) Lane x{};
@@ -38,6 +39,8 @@ struct PixelRow {
   alignas(64) Lane regular{};  ///< 0 where the frame has no inverse
   std::array<Vec3f, capacity + padding> base_normals;
   std::array<Vec3f, capacity + padding> details;
+  Vectors color;
+  std::array<Vec3f, capacity + padding> colors;
 };
 
 /// Interpolates a triangle over pixels `begin` to `end` of the row, whose pixel 0 has chart
@@ -48,5 +51,7 @@ void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int
 void finish_base_normals(int count, PixelRow& row);
 /// Fills details and regular from `stored`: unit, or zero where nothing is seen.
 void finish_details(int count, PixelRow& row);
+/// Fills colors from `color`; zero where nothing is seen.
+void finish_colors(int count, PixelRow& row);
 
 }  // namespace normalshop

@@ -39,7 +39,7 @@ class Pull {
   bool find_runs(int y, int x0, int x1);
   void fill_row(int y, int x0, int count);
   void clear_row(int y, int x0, int count);
-  void read_maps(const Run& run, int x0, int y);
+  void read_maps(const Run& run);
   Vec3f irregular_detail(std::size_t i) const;
 
   const StorageAtlas& storage_;
@@ -51,7 +51,8 @@ class Pull {
   std::size_t run_count_ = 0;
 };
 
-/// Pixels that follow each other on one triangle, interpolated; false when there are none.
+/// Interpolates the row; its runs are pixels side by side that read one texture set. False when
+/// there are none.
 bool Pull::find_runs(int y, int x0, int x1) {
   const std::uint32_t* ids = chart_.ids.triangle.row(y);
   run_count_ = 0;
@@ -64,7 +65,12 @@ bool Pull::find_runs(int y, int x0, int x1) {
     if (id == no_triangle) continue;
     const PixelTriangle& triangle = triangles_.get(id);
     interpolate_run(triangle, x0, y, begin - x0, x - x0, row_);
-    runs_[run_count_++] = {begin - x0, x - x0, triangle.texture_set};
+    Run* last = run_count_ > 0 ? &runs_[run_count_ - 1] : nullptr;
+    if (last != nullptr && last->end == begin - x0 && last->texture_set == triangle.texture_set) {
+      last->end = x - x0;
+    } else {
+      runs_[run_count_++] = {begin - x0, x - x0, triangle.texture_set};
+    }
   }
   return run_count_ > 0;
 }
@@ -79,10 +85,11 @@ void Pull::clear_row(int y, int x0, int count) {
 void Pull::fill_row(int y, int x0, int count) {
   finish_base_normals(count, row_);
   std::copy_n(row_.base_normals.data(), count, chart_.base_normal.row(y) + x0);
+  for (std::size_t i = 0; i < run_count_; ++i) read_maps(runs_[i]);
   if (options_.albedo) {
-    std::fill_n(chart_.albedo.row(y) + x0, count, Vec3f(Vec3f::Zero()));
+    finish_colors(count, row_);
+    std::copy_n(row_.colors.data(), count, chart_.albedo.row(y) + x0);
   }
-  for (std::size_t i = 0; i < run_count_; ++i) read_maps(runs_[i], x0, y);
   if (!options_.normals) return;
   finish_details(count, row_);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
@@ -91,24 +98,27 @@ void Pull::fill_row(int y, int x0, int count) {
   std::copy_n(row_.details.data(), count, chart_.normal.row(y) + x0);
 }
 
-void Pull::read_maps(const Run& run, int x0, int y) {
+void Pull::read_maps(const Run& run) {
   const StorageSet& set = storage_.sets[run.texture_set];
-  const bool tangent_space = set.normals.convention().space == NormalSpace::Tangent;
-  Vec3f* albedo = options_.albedo ? chart_.albedo.row(y) + x0 : nullptr;
-  for (int x = run.begin; x < run.end; ++x) {
-    const auto i = static_cast<std::size_t>(x);
-    const Vec2f uv(row_.u[i], row_.v[i]);
-    if (options_.normals) {
-      Vec3f stored = set.normals.sample(uv);
-      if (!tangent_space) {
-        stored = chart_.grid.view.to_chart(stored);
-        row_.sign[i] = 0.0F;
-      }
-      row_.stored.x[i] = stored.x();
-      row_.stored.y[i] = stored.y();
-      row_.stored.z[i] = stored.z();
-    }
-    if (albedo != nullptr) albedo[x] = set.albedo.sample(uv);
+  const auto begin = static_cast<std::size_t>(run.begin);
+  const int count = run.end - run.begin;
+  const float* u = &row_.u[begin];
+  const float* v = &row_.v[begin];
+  if (options_.albedo) {
+    set.albedo.sample(u, v, count, &row_.color.x[begin], &row_.color.y[begin],
+                      &row_.color.z[begin]);
+  }
+  if (!options_.normals) return;
+  set.normals.sample(u, v, count, &row_.stored.x[begin], &row_.stored.y[begin],
+                     &row_.stored.z[begin]);
+  if (set.normals.convention().space == NormalSpace::Tangent) return;
+  for (std::size_t i = begin; i < static_cast<std::size_t>(run.end); ++i) {
+    const Vec3f n =
+        chart_.grid.view.to_chart(Vec3f(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]));
+    row_.stored.x[i] = n.x();
+    row_.stored.y[i] = n.y();
+    row_.stored.z[i] = n.z();
+    row_.sign[i] = 0.0F;
   }
 }
 

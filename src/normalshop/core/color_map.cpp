@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "normalshop/core/sample.h"
+#include "normalshop/core/sample_bytes.h"
 
 namespace normalshop {
 
@@ -43,13 +44,31 @@ Vec3f ColorMap::texel(int x, int y) const {
 Vec3f ColorMap::sample(const Vec2f& uv) const {
   if (empty()) return factor_;
   const WrappedTaps tap(uv, codes_.width(), codes_.height());
-  if (codes_.type() == CodeType::U8) return sample_bytes(tap).cwiseProduct(factor_);
+  if (codes_.type() == CodeType::U8) return sample_8bit(tap).cwiseProduct(factor_);
   const Vec3f upper = texel(tap.x0, tap.y0) * (1.0F - tap.fx) + texel(tap.x1, tap.y0) * tap.fx;
   const Vec3f lower = texel(tap.x0, tap.y1) * (1.0F - tap.fx) + texel(tap.x1, tap.y1) * tap.fx;
   return (upper * (1.0F - tap.fy) + lower * tap.fy).cwiseProduct(factor_);
 }
 
-Vec3f ColorMap::sample_bytes(const WrappedTaps& tap) const {
+void ColorMap::sample(const float* u, const float* v, int count, float* r, float* g,
+                      float* b) const {
+  if (!empty() && sample_bytes(codes_, to_linear_.data(), u, v, count, r, g, b)) {
+    for (int i = 0; i < count; ++i) {
+      r[i] *= factor_.x();
+      g[i] *= factor_.y();
+      b[i] *= factor_.z();
+    }
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    const Vec3f c = sample({u[i], v[i]});
+    r[i] = c.x();
+    g[i] = c.y();
+    b[i] = c.z();
+  }
+}
+
+Vec3f ColorMap::sample_8bit(const WrappedTaps& tap) const {
   const int channels = codes_.channels();
   const int step = channels >= 3 ? 1 : 0;
   const std::uint8_t* upper = codes_.row<std::uint8_t>(tap.y0);

@@ -20,10 +20,12 @@ class ColorMap {
   const RawImage& codes() const { return codes_; }
   /// Linear RGB times the factor; bilinear and wrapping like NormalMap::sample().
   Vec3f sample(const Vec2f& uv) const;
+  /// sample() at `count` places, faster; room for more entries as in NormalMap::sample().
+  void sample(const float* u, const float* v, int count, float* r, float* g, float* b) const;
 
  private:
   Vec3f texel(int x, int y) const;
-  Vec3f sample_bytes(const WrappedTaps& tap) const;
+  Vec3f sample_8bit(const WrappedTaps& tap) const;
 
   RawImage codes_;
   Vec3f factor_ = Vec3f::Ones();

@@ -1,5 +1,6 @@
 #include "normalshop/core/normal_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -9,6 +10,7 @@
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
+#include "normalshop/core/sample_bytes.h"
 
 namespace normalshop {
 
@@ -107,6 +109,48 @@ Vec3f NormalMap::sample_codes(const WrappedTaps& tap) const {
   const float y = mean(1) * range_.scale + range_.offset;
   return {mean(0) * range_.scale + range_.offset, convention_.green_down ? -y : y,
           mean(2) * range_.scale + range_.offset};
+}
+
+/// Is any tile edited that these places may read? Also true where finding out would take long.
+bool NormalMap::may_read_edits(const float* u, const float* v, int count) const {
+  const auto [u0, u1] = std::minmax_element(u, u + count);
+  const auto [v0, v1] = std::minmax_element(v, v + count);
+  const Vec2f size(static_cast<float>(width()), static_cast<float>(height()));
+  const int x0 = floor_to_int(*u0 * size.x() - 0.5F);
+  const int x1 = floor_to_int(*u1 * size.x() - 0.5F) + 1;
+  const int y0 = floor_to_int(*v0 * size.y() - 0.5F);
+  const int y1 = floor_to_int(*v1 * size.y() - 0.5F) + 1;
+  if (x0 < 0 || y0 < 0 || x1 >= width() || y1 >= height()) return true;  // wraps around
+  if ((x1 / tile_size - x0 / tile_size + 1) * (y1 / tile_size - y0 / tile_size + 1) > 2 * count) {
+    return true;
+  }
+  for (int ty = y0 / tile_size; ty <= y1 / tile_size; ++ty) {
+    for (int tx = x0 / tile_size; tx <= x1 / tile_size; ++tx) {
+      if (tiles_[static_cast<std::size_t>(ty * tile_columns_ + tx)]) return true;
+    }
+  }
+  return false;
+}
+
+void NormalMap::sample(const float* u, const float* v, int count, float* x, float* y,
+                       float* z) const {
+  if (count <= 0) return;
+  if (!convention_.two_channel && !may_read_edits(u, v, count) &&
+      sample_bytes(codes_, nullptr, u, v, count, x, y, z)) {
+    const float up = convention_.green_down ? -1.0F : 1.0F;
+    for (int i = 0; i < count; ++i) {
+      x[i] = x[i] * range_.scale + range_.offset;
+      y[i] = up * (y[i] * range_.scale + range_.offset);
+      z[i] = z[i] * range_.scale + range_.offset;
+    }
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    const Vec3f n = sample({u[i], v[i]});
+    x[i] = n.x();
+    y[i] = n.y();
+    z[i] = n.z();
+  }
 }
 
 bool NormalMap::edited(int x, int y) const {

@@ -71,6 +71,9 @@ class NormalMap {
   /// Bilinear, not normalised, wrapping around; (0, 0) is the corner of the first texel and
   /// (1, 1) that of the last.
   Vec3f sample(const Vec2f& uv) const;
+  /// sample() at `count` places, faster. All arrays have sample_padding (sample.h) entries more, in
+  /// which anything may be left.
+  void sample(const float* u, const float* v, int count, float* x, float* y, float* z) const;
 
   bool edited(int x, int y) const;
   /// Any texel edited at all?
@@ -94,6 +97,7 @@ class NormalMap {
   template <class Code>
   Vec3f sample_codes(const WrappedTaps& tap) const;
   const Tile* tile(int x, int y) const;
+  bool may_read_edits(const float* u, const float* v, int count) const;
   static std::size_t index_in_tile(int x, int y) {
     return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
   }

@@ -35,6 +35,10 @@ T sample_bilinear(const ImageView<T>& image, float x, float y) {
   return top * (1.0F - fy) + bottom * fy;
 }
 
+/// Arrays of places and results that are read many at once have this many entries more, in which
+/// anything may be left.
+inline constexpr int sample_padding = 16;
+
 /// The largest integer not above x, for |x| below 1e9; 0 for anything else.
 inline int floor_to_int(float x) {
   if (!(std::abs(x) < 1e9F)) return 0;
