@@ -7,6 +7,8 @@
 #include <mutex>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "normalshop/chart/chart_triangle.h"
 #include "normalshop/chart/edit_sampler.h"
 #include "normalshop/chart/texel_batch.h"
@@ -54,6 +56,9 @@ class SetPush {
   std::vector<Write> gutter_writes() const;
   std::vector<Write> shared_writes() const;
   Vec3f texel_weights(std::uint32_t triangle, int x, int y) const;
+  Vec3f usable_vector(int x, int y, const Vec3f& base) const;
+  Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
+                      const PushTriangle& source, const Effect& effect) const;
   void add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
                  const Effect& effect, const Vec3f& base, TexelBatch& batch) const;
   Vec3f edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights, const Effect& effect,
@@ -142,17 +147,20 @@ void SetPush::mark_tiles(std::uint32_t triangle) {
   }
 }
 
+/// The texel's vector; codes without a direction count as the base normal.
+Vec3f SetPush::usable_vector(int x, int y, const Vec3f& base) const {
+  const Vec3f stored = set_.normals.vector(x, y);
+  if (!codes::direction_of(stored).isZero()) return stored;
+  if (space_ == NormalSpace::Tangent) return Vec3f::UnitZ();
+  return sampler_.grid().view.to_object(base);
+}
+
 /// Adds a texel whose code refers to `frame` at `weights`; `base` is the edited surface's.
 void SetPush::add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
                         const Effect& effect, const Vec3f& base, TexelBatch& batch) const {
   const View& view = sampler_.grid().view;
   const Mat3f m = frame.frame(weights, frame.normals * weights, space_, view);
-  Vec3f stored = set_.normals.vector(x, y);
-  // Codes without a direction count as the base normal.
-  if (codes::direction_of(stored).isZero()) {
-    stored = space_ == NormalSpace::Tangent ? Vec3f(Vec3f::UnitZ()) : view.to_object(base);
-  }
-  batch.add(m, base, stored, effect);
+  batch.add(m, base, usable_vector(x, y, base), effect);
 }
 
 Tally SetPush::push_tile(int tile, Cache& triangles, TexelBatch& batch) {
@@ -160,7 +168,16 @@ Tally SetPush::push_tile(int tile, Cache& triangles, TexelBatch& batch) {
   const int x0 = tile % tile_columns_ * tile_size;
   const int y0 = tile / tile_columns_ * tile_size;
   const Rect rect = intersect({x0, y0, x0 + tile_size, y0 + tile_size}, set_.texels.owner().rect());
+  const auto announce = [&](int y) {
+    const auto owners = [&](int row) {
+      const bool inside = row >= rect.y0 && row < rect.y1;
+      return inside ? set_.texels.owner().row(row) + rect.x0 : nullptr;
+    };
+    triangles.announce(owners(y + 2), owners(y + 4), rect.width());
+  };
+  for (int y = rect.y0 - 4; y < rect.y0; ++y) announce(y);
   for (int y = rect.y0; y < rect.y1; ++y) {
+    announce(y);
     std::array<int, TexelBatch::capacity> columns{};
     batch.count = 0;
     for (int x = rect.x0; x < rect.x1; ++x) {
@@ -226,22 +243,49 @@ std::vector<Write> collect(const std::vector<Item>& items, const Mesh& mesh, con
   return all;
 }
 
-/// A gutter texel takes the change of the surface point across the seam that it stands for, but its
-/// own details, decoded by the frame of the chart beside it.
+/// What a gutter texel held before the edit, in its own frame. Where the edit is weak that is its
+/// code; the stronger it is, the more the texel is grown anew from the surface that it stands for:
+/// else a filter would leave there what it takes away on the other side of the seam.
+Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
+                             const PushTriangle& source, const Effect& effect) const {
+  if (g.source.triangle == g.owner || mesh_.texture_sets[g.source.triangle] != index_) return own;
+  const Vec3f weights(1.0F, g.source.b1, g.source.b2);
+  const std::size_t corner = 3 * static_cast<std::size_t>(g.source.triangle);
+  const Vec2f uv = interpolate(mesh_.uvs[corner], mesh_.uvs[corner + 1], mesh_.uvs[corner + 2],
+                               g.source.b1, g.source.b2);
+  const Mat3f across =
+      source.frame(weights, source.normals * weights, space_, sampler_.grid().view);
+  const Vec3f grown = frame.inverse() * (across * set_.normals.sample(uv));
+  if (!grown.allFinite() || grown.isZero()) return own;
+  constexpr float strong = 0.05F;  // a slope of three degrees
+  const float share =
+      std::min(1.0F, effect.weight * (effect.change.norm() + effect.coverage) / strong);
+  return (1.0F - share) * own.normalized() + share * grown.normalized();
+}
+
+/// A gutter texel takes the change of the surface point across the seam that it stands for, in the
+/// frame of the chart beside it, which decodes it.
 std::vector<Write> SetPush::gutter_writes() const {
+  const View& view = sampler_.grid().view;
   const auto visit = [&](const GutterTexel& g, Cache& triangles, std::vector<Write>& out) {
     // The surface may run on in another texture set, whose candidates are not known here.
     if (mesh_.texture_sets[g.source.triangle] == index_ && candidate_[g.source.triangle] == 0) {
       return;
     }
     Vec3f base;
-    const Effect effect =
-        sampler_.at(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2}, base);
+    const PushTriangle source = triangles.get(g.source.triangle);
+    const Effect effect = sampler_.at(source, {1.0F, g.source.b1, g.source.b2}, base);
     if (!effect.any()) return;
     const int x = static_cast<int>(g.texel) % set_.normals.width();
     const int y = static_cast<int>(g.texel) / set_.normals.width();
-    out.push_back({g.texel, edited(x, y, triangles.get(g.owner), {1.0F, g.owner_b1, g.owner_b2},
-                                   effect, base)});
+    TexelBatch batch;
+    const PushTriangle& owner = triangles.get(g.owner);
+    const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
+    const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, view);
+    const Vec3f own = usable_vector(x, y, base);
+    batch.add(frame, base, gutter_vector(g, frame, own, source, effect), effect);
+    apply(sampler_.mode(), batch);
+    out.push_back({g.texel, batch.result.get(0)});
   };
   return collect(set_.texels.gutter(), mesh_, sampler_.grid(), visit);
 }
