@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <hwy/cache_control.h>
 
 #include "normalshop/chart/grid.h"
 #include "normalshop/core/normal_map.h"
@@ -97,6 +98,37 @@ class TriangleCache {
  public:
   TriangleCache(const Mesh& mesh, const ChartGrid& grid)
       : mesh_(mesh), grid_(grid), ids_(slots, no_triangle), triangles_(new T[slots]) {}
+
+  /// Fetches what get() will read of a triangle into the processor's caches: first the mesh's
+  /// attributes, then, once they are there, the positions.
+  void announce_attributes(std::uint32_t triangle) const {
+    if (ids_[triangle % slots] == triangle) return;
+    const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
+    hwy::Prefetch(&mesh_.triangles[triangle]);
+    hwy::Prefetch(&mesh_.uvs[corner]);
+    hwy::Prefetch(&mesh_.normals[corner]);
+    hwy::Prefetch(&mesh_.normals[corner + 2]);
+    if (mesh_.tangents.empty()) return;
+    hwy::Prefetch(&mesh_.tangents[corner]);
+    hwy::Prefetch(&mesh_.tangents[corner + 2]);
+  }
+  void announce_positions(std::uint32_t triangle) const {
+    if (ids_[triangle % slots] == triangle) return;
+    for (const std::uint32_t vertex : mesh_.triangles[triangle]) {
+      hwy::Prefetch(&mesh_.positions[vertex]);
+    }
+  }
+  /// Both for a row of triangles; `later` is the row after next.
+  void announce(const std::uint32_t* next, const std::uint32_t* later, int count) const {
+    for (int i = 0; i < count; ++i) {
+      if (next != nullptr && next[i] != no_triangle && (i == 0 || next[i] != next[i - 1])) {
+        announce_positions(next[i]);
+      }
+      if (later != nullptr && later[i] != no_triangle && (i == 0 || later[i] != later[i - 1])) {
+        announce_attributes(later[i]);
+      }
+    }
+  }
 
   const T& get(std::uint32_t triangle) {
     const std::size_t slot = triangle % slots;

@@ -20,7 +20,9 @@ class Pull {
       : storage_(storage), options_(options), chart_(chart), triangles_(mesh, chart.grid) {}
 
   void fill(const Rect& rect) {
+    for (int y = rect.y0 - 4; y < rect.y0; ++y) announce(rect, y);
     for (int y = rect.y0; y < rect.y1; ++y) {
+      announce(rect, y);
       if (find_runs(y, rect.x0, rect.x1)) {
         fill_row(y, rect.x0, rect.width());
       } else {
@@ -36,6 +38,14 @@ class Pull {
     std::uint32_t texture_set;
   };
 
+  /// Has the triangles of the rows 2 and 4 below y fetched.
+  void announce(const Rect& rect, int y) const {
+    const auto ids = [&](int row) {
+      const bool inside = row >= rect.y0 && row < rect.y1;
+      return inside ? chart_.ids.triangle.row(row) + rect.x0 : nullptr;
+    };
+    triangles_.announce(ids(y + 2), ids(y + 4), rect.width());
+  }
   bool find_runs(int y, int x0, int x1);
   void fill_row(int y, int x0, int count);
   void clear_row(int y, int x0, int count);
