@@ -91,4 +91,12 @@ Profile::Value Profile::at(float u) const {
   return custom(u);
 }
 
+Profile::Value Profile::at(float u, float radius) const {
+  Value value = at(u);
+  if (shape_ == ProfileShape::Crease && std::abs(u) < radius) {
+    value.slope = (at(u + radius).height - at(u - radius).height) / (2.0F * radius);
+  }
+  return value;
+}
+
 }  // namespace normalshop

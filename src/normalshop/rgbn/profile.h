@@ -40,6 +40,9 @@ class Profile {
   };
   /// Outside [-1, 1] the level continues.
   Value at(float u) const;
+  /// The same with a slope jump (a crease's bottom) spread evenly over `radius` on both sides: the
+  /// slope of the height averaged over that width, so that pixels don't draw it as stairs.
+  Value at(float u, float radius) const;
   /// h(1): what the inside of a closed stroke is raised by.
   float level() const { return level_; }
 
