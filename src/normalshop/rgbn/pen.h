@@ -59,7 +59,8 @@ struct PenOptions {
 ///   exact gradient of one height, also where pressure and taper change it along the stroke, except
 ///   on the stroke's medial axis. A closed stroke that changes the level keeps its height: there
 ///   pressure scales the width alone.
-/// - A crease's bottom, where its slope jumps, is spread over 1.5 pixels on both sides.
+/// - A crease's bottom, where its slope jumps, is spread over 1.5 pixels on both sides
+///   (an eighth of the width at most).
 /// - Where strokes meet, the one with the larger |height| counts: they join, they don't add up.
 /// - Closed strokes: inside is where the winding number is not 0, whatever the direction. Inside a
 ///   step the level is constant: slopes and coverage are 0 except along the stroke.

@@ -13,8 +13,13 @@ namespace {
 constexpr int cell_size = 8;
 /// Nearer to the line than this, its own orientation says where inside is.
 constexpr float on_line = 1e-3F;
-/// Pixels on each side over which slope jumps are spread.
+/// Slope jumps are spread over this many pixels on each side, but not over more of the profile.
 constexpr float jump_radius = 1.5F;
+constexpr float largest_jump_share = 0.25F;
+
+float jump_share(float half_width) {
+  return std::min(jump_radius / half_width, largest_jump_share);
+}
 
 float cross(const Vec2f& a, const Vec2f& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -213,7 +218,7 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
     side = distance < on_line ? side * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
   }
   const float u = side * distance / half_width;
-  const Profile::Value h = profile_.at(u, jump_radius / half_width);
+  const Profile::Value h = profile_.at(u, jump_share(half_width));
   const float amplitude = height_ * v.fade();
   const float along_rate = height_ * v.segment->fade_rate * h.height -
                            amplitude * h.slope * u * v.segment->half_width_rate / half_width;
@@ -228,8 +233,8 @@ FieldSample PolylineField::cap(const Nearest& near) const {
   const float distance = std::sqrt(near.squared);
   if (!(distance < half_width) || half_width < 1e-6F) return {};
   const float u = distance / half_width;
-  const Profile::Value l = profile_.at(u, jump_radius / half_width);
-  const Profile::Value r = profile_.at(-u, jump_radius / half_width);
+  const Profile::Value l = profile_.at(u, jump_share(half_width));
+  const Profile::Value r = profile_.at(-u, jump_share(half_width));
   const float even = 0.5F * (l.height + r.height);
   const float odd = 0.5F * (l.height - r.height);
   const float even_slope = 0.5F * (l.slope - r.slope);
