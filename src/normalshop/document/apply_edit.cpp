@@ -88,7 +88,6 @@ struct Source {
 };
 
 Source make_source(const Edit& edit, const EditingChart& chart) {
-  constexpr float least_facing = 0.17F;  // beyond 80 degrees slopes say little
   const int width = chart.grid.width();
   const int height = chart.grid.height();
   Source source{SlopeImage(width, height), MaskImage(width, height)};
@@ -97,8 +96,9 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
       for (int x = 0; x < width; ++x) {
         const Vec3f& base = chart.base_normal(x, y);
-        const bool valid = base.z() > least_facing;
-        source.validity(x, y) = valid ? 1.0F : 0.0F;
+        // Steep slopes beside rims and steps would else outweigh the surface around them.
+        source.validity(x, y) = chart.weight(x, y);
+        const bool valid = chart.weight(x, y) > 0.0F;
         source.slopes(x, y) = !valid   ? Vec2f(0.0F, 0.0F)
                               : ignore ? base_gradient(base, edit.mode)
                                        : gradient_from_normal(chart.normal(x, y), base, edit.mode);

@@ -32,7 +32,7 @@ Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bo
 struct OperatorInput {
   SlopeView source;    ///< before the edit (with details ignored: the base surface); extended past
                        ///< borders; empty unless the operator reads()
-  MaskView validity;   ///< 1 where source is seen facing surface; empty likewise
+  MaskView validity;   ///< the weight of the effective chart: how far source counts; empty likewise
   Rect region;         ///< where the result is wanted; the rest stays as it is
   Rect view;           ///< the view's whole extent in pixels of this chart
   Rect model;          ///< a box around the whole model, likewise
