@@ -10,6 +10,7 @@
 #include "normalshop/core/random.h"
 #include "normalshop/core/sample.h"
 #include "normalshop/rgbn/shade.h"
+#include "normalshop/rgbn/smooth.h"
 #include "normalshop/surface/seams.h"
 
 namespace normalshop {
@@ -55,22 +56,58 @@ ChartGrid band_grid(const Scene& scene, int y0, int y1) {
   return grid;
 }
 
-/// Ambient occlusion and the key light's soft shadow, from depths at picture size.
+/// Lattice pixels of the whole model at the picture's size.
+Rect model_window(const Scene& scene) {
+  const View frame = framing_view(scene.mesh, scene.view.direction, scene.view.up);
+  const Vec3f offset = scene.view.to_chart(frame.center - scene.view.center) / scene.pixel;
+  const float w = 0.5F * frame.width / scene.pixel;
+  const float h = 0.5F * frame.height / scene.pixel;
+  constexpr float far = 1e6F;
+  const auto at = [&](float v) { return static_cast<int>(std::clamp(v, -far, far)); };
+  return {at(offset.x() - w), at(-offset.y() - h), at(offset.x() + w), at(-offset.y() + h)};
+}
+
+MaskImage crop(const MaskImage& mask, int x, int y, int width, int height) {
+  MaskImage out(width, height);
+  for (int j = 0; j < height; ++j) std::copy_n(mask.row(y + j) + x, width, out.row(j));
+  return out;
+}
+
+/// Ambient occlusion and the key light's soft shadow, from depths at picture size. What lies
+/// outside the picture casts shadows into it too.
 void occlude(Scene& scene) {
+  const int width = scene.options.width;
+  const int height = scene.options.height;
+  const auto size = static_cast<float>(std::min(width, height));
+  const float reach = 0.35F * size;
   Scene coarse{scene.mesh, scene.storage, scene.options, scene.view, scene.pixel, 1, {}, {}, {},
                {}};
+  ChartGrid grid = band_grid(coarse, 0, height);
+  const Rect picture = grid.window;
+  grid.window =
+      unite(picture, intersect(grow(picture, static_cast<int>(reach)), model_window(scene)));
   IdBuffer ids;
-  Rasterizer().rasterize(scene.mesh, band_grid(coarse, 0, scene.options.height), ids);
-  MaskImage& height = ids.depth;
-  for (int y = 0; y < height.height(); ++y) {
-    for (int x = 0; x < height.width(); ++x) height(x, y) /= scene.pixel;
+  Rasterizer().rasterize(scene.mesh, grid, ids);
+  MaskImage seen(grid.width(), grid.height());
+  for (int y = 0; y < grid.height(); ++y) {
+    for (int x = 0; x < grid.width(); ++x) {
+      ids.depth(x, y) /= scene.pixel;
+      seen(x, y) = ids.triangle(x, y) == no_triangle ? 0.0F : 1.0F;
+    }
   }
-  const int width = scene.options.width;
-  scene.occlusion.resize(width, scene.options.height);
-  scene.shadow.resize(width, scene.options.height);
-  const float size = static_cast<float>(std::min(width, scene.options.height));
-  ambient_occlusion(height, 0.06F * size, scene.occlusion);
-  cast_shadow(height, scene.options.light, 0.35F * size, scene.shadow);
+  MaskImage occlusion(grid.width(), grid.height());
+  MaskImage shadow(grid.width(), grid.height());
+  ambient_occlusion(ids.depth, 0.06F * size, occlusion);
+  cast_shadow(ids.depth, scene.options.light, reach, shadow);
+  // Both are sampled with jitter; a narrow blur takes the grain away.
+  SmoothOptions blur;
+  blur.sigma = 1.5F;
+  smooth(occlusion, seen, occlusion, occlusion.rect(), blur);
+  smooth(shadow, seen, shadow, shadow.rect(), blur);
+  const int x = picture.x0 - grid.window.x0;
+  const int y = picture.y0 - grid.window.y0;
+  scene.occlusion = crop(occlusion, x, y, width, height);
+  scene.shadow = crop(shadow, x, y, width, height);
 }
 
 MaskImage enlarge(const MaskImage& mask, int y0, int y1, int samples) {
