@@ -114,6 +114,9 @@ Value sets_value(const EditJob& job) {
 
 EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
                      const std::filesystem::path& folder, const ExportOptions& options) {
+  // First, so that a folder that cannot be written costs no time.
+  check_output_folder(open.model, folder);
+  StagedFolder staged(folder);
   std::vector<std::pair<std::string, double>> times;
   StageClock clock(times);
   Progress progress;
@@ -125,11 +128,12 @@ EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
   clock.stop();
   job.notes = job.opened.notes;
   apply_all(job, recipe, clock);
-  job.files = export_document(job.opened, folder, options, job.notes, progress);
+  job.files = export_document(job.opened, staged, options, job.notes, progress);
   clock.stop();
   job.times = std::move(times);
-  job.files.push_back(folder / "report.json");
-  write_file(job.files.back(), to_json(report_value(job)));
+  job.files.push_back(staged.path() / "report.json");
+  staged.write([&] { write_file(job.files.back(), to_json(report_value(job))); });
+  job.files = staged.commit(job.files);
   return job;
 }
 

@@ -26,41 +26,13 @@ std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType typ
   return opened.model.texture_sets[set].name + extension;
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw IoError(folder.string() + ": cannot create this folder: " +
-                  (error ? error.message() : std::string("a file of that name exists")));
-  }
-}
-
-}  // namespace
-
-RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportOptions& options) {
-  const StorageSet& stored = opened.document.storage().sets[set];
-  const NormalConvention& own = stored.normals.convention();
-  const NormalConvention to = target_convention(own, options.preset);
-  const CodeType type = options.type.value_or(opened.sets[set].type);
-  if (own.space == to.space) return stored.normals.encode(type, to);
-  return convert_space(opened.document.mesh(), stored.texels, stored.normals, to, type);
-}
-
-std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
-                                                   const std::filesystem::path& folder,
-                                                   const ExportOptions& options,
-                                                   std::vector<std::string>& notes,
-                                                   const Progress& progress) {
-  make_folder(folder);
-  std::error_code error;
-  const std::filesystem::path own_folder = opened.model.path.parent_path();
-  if (std::filesystem::equivalent(folder, own_folder.empty() ? "." : own_folder, error)) {
-    throw InvalidInput(folder.string() +
-                       ": this is the model's own folder; choose another one, so that nothing of "
-                       "yours is overwritten");
-  }
+std::vector<std::filesystem::path> write_maps(const OpenedDocument& opened,
+                                              const std::filesystem::path& folder,
+                                              const ExportOptions& options,
+                                              std::map<std::size_t, NormalMapReference>& references,
+                                              std::vector<std::string>& notes,
+                                              const Progress& progress) {
   std::vector<std::filesystem::path> files;
-  std::map<std::size_t, NormalMapReference> references;
   for (std::size_t i = 0; i < opened.sets.size(); ++i) {
     const CodeType type = options.type.value_or(opened.sets[i].type);
     const std::string name = map_name(opened, i, type);
@@ -74,12 +46,55 @@ std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
       notes.push_back(name + ": glTF viewers read only PNG and JPEG; use --bits 8 or 16 for them");
     }
   }
-  progress.at(0.9, "writing the model");
-  const WrittenModel written =
-      write_model(opened.model, folder / opened.model.path.filename(), references);
-  files.insert(files.end(), written.files.begin(), written.files.end());
-  notes.insert(notes.end(), written.notes.begin(), written.notes.end());
   return files;
+}
+
+}  // namespace
+
+RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportOptions& options) {
+  const StorageSet& stored = opened.document.storage().sets[set];
+  const NormalConvention& own = stored.normals.convention();
+  const NormalConvention to = target_convention(own, options.preset);
+  const CodeType type = options.type.value_or(opened.sets[set].type);
+  if (own.space == to.space) return stored.normals.encode(type, to);
+  return convert_space(opened.document.mesh(), stored.texels, stored.normals, to, type);
+}
+
+void check_output_folder(const std::filesystem::path& model, const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path own = model.parent_path();
+  if (!std::filesystem::equivalent(folder, own.empty() ? "." : own, error)) return;
+  throw InvalidInput(folder.string() +
+                     ": this is the model's own folder; choose another one, so that nothing of "
+                     "yours is overwritten");
+}
+
+std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
+                                                   const StagedFolder& staged,
+                                                   const ExportOptions& options,
+                                                   std::vector<std::string>& notes,
+                                                   const Progress& progress) {
+  std::vector<std::filesystem::path> files;
+  staged.write([&] {
+    std::map<std::size_t, NormalMapReference> references;
+    files = write_maps(opened, staged.path(), options, references, notes, progress);
+    progress.at(0.9, "writing the model");
+    const WrittenModel written =
+        write_model(opened.model, staged.path() / opened.model.path.filename(), references);
+    files.insert(files.end(), written.files.begin(), written.files.end());
+    notes.insert(notes.end(), written.notes.begin(), written.notes.end());
+  });
+  return files;
+}
+
+std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
+                                                   const std::filesystem::path& folder,
+                                                   const ExportOptions& options,
+                                                   std::vector<std::string>& notes,
+                                                   const Progress& progress) {
+  check_output_folder(opened.model.path, folder);
+  StagedFolder staged(folder);
+  return staged.commit(export_document(opened, staged, options, notes, progress));
 }
 
 }  // namespace normalshop

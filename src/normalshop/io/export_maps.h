@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "normalshop/io/open_document.h"
+#include "normalshop/io/staged_folder.h"
 
 namespace normalshop {
 
@@ -27,9 +28,20 @@ struct ExportOptions {
 /// unedited texel keeps its imported code.
 RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportOptions& options);
 
+/// Throws InvalidInput when `folder` is the one that the model came from: nothing of the user's may
+/// be overwritten.
+void check_output_folder(const std::filesystem::path& model, const std::filesystem::path& folder);
+
 /// Writes `<texture set>_normal.png` (.exr for 32 bits, .tif where the input was TIFF) for every
-/// texture set and the model that uses them into `folder`, which is created. All files are checked
-/// and complete before they take their names. Returns the files, maps first, then the model's.
+/// texture set and the model that uses them into `staged`, whose commit() is the caller's. Returns
+/// the files, maps first, then the model's. Throws IoError or InvalidInput.
+std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
+                                                   const StagedFolder& staged,
+                                                   const ExportOptions& options,
+                                                   std::vector<std::string>& notes,
+                                                   const Progress& progress = {});
+/// The same into a folder, which is created: all files are complete before they take their names,
+/// and when one cannot be written there is none.
 std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
                                                    const std::filesystem::path& folder,
                                                    const ExportOptions& options,
