@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstdio>
 #include <string>
+#include <system_error>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "normalshop/core/error.h"
@@ -84,6 +88,60 @@ OIIO::ImageSpec spec_of(const Format& format, const RawImage& image,
   return spec;
 }
 
+/// The file that the library writes to. Some of its formats don't look whether the disk took their
+/// bytes (a full one does not), so the first failure is kept here.
+class CheckedFile : public OIIO::Filesystem::IOProxy {
+ public:
+  explicit CheckedFile(const std::filesystem::path& path)
+      : IOProxy(path.string(), Write), file_(std::fopen(path.c_str(), "w+b")) {
+    check(file_ != nullptr);
+  }
+  CheckedFile(const CheckedFile&) = delete;
+  CheckedFile& operator=(const CheckedFile&) = delete;
+  ~CheckedFile() override { close(); }
+
+  const char* proxytype() const override { return "file"; }
+  void close() override {
+    if (file_ != nullptr) check(std::fclose(file_) == 0);
+    file_ = nullptr;
+    m_mode = Closed;
+  }
+  std::int64_t tell() override { return file_ != nullptr ? std::ftell(file_) : 0; }
+  bool seek(std::int64_t offset) override {
+    return file_ != nullptr && check(std::fseek(file_, offset, SEEK_SET) == 0);
+  }
+  std::size_t read(void* bytes, std::size_t size) override {
+    return file_ != nullptr ? std::fread(bytes, 1, size, file_) : 0;
+  }
+  std::size_t write(const void* bytes, std::size_t size) override {
+    const std::size_t written = file_ != nullptr ? std::fwrite(bytes, 1, size, file_) : 0;
+    check(written == size);
+    return written;
+  }
+  std::size_t size() const override {
+    if (file_ == nullptr) return 0;
+    const long here = std::ftell(file_);
+    std::fseek(file_, 0, SEEK_END);
+    const long end = std::ftell(file_);
+    std::fseek(file_, here, SEEK_SET);
+    return static_cast<std::size_t>(end);
+  }
+  void flush() const override {
+    if (file_ != nullptr) std::fflush(file_);
+  }
+  /// Of the first call that failed; 0: none.
+  int error_code() const { return error_code_; }
+
+ private:
+  bool check(bool done) {
+    if (!done && error_code_ == 0) error_code_ = errno != 0 ? errno : EIO;
+    return done;
+  }
+
+  std::FILE* file_;
+  int error_code_ = 0;
+};
+
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& error) {
   throw IoError("cannot write '" + path.string() + "': " + error.substr(0, error.find('\n')));
 }
@@ -101,9 +159,14 @@ void write_image(const std::filesystem::path& path, const RawImage& image,
   const OIIO::TypeDesc stored = image.type() == CodeType::U8    ? OIIO::TypeDesc::UINT8
                                 : image.type() == CodeType::U16 ? OIIO::TypeDesc::UINT16
                                                                 : OIIO::TypeDesc::FLOAT;
-  const bool written = output->open(pending.path().string(), spec) &&
+  CheckedFile file(pending.path());
+  const bool written = file.error_code() == 0 && output->set_ioproxy(&file) &&
+                       output->open(pending.path().string(), spec) &&
                        output->write_image(stored, image.data()) && output->close();
-  if (!written) fail(path, output->geterror());
+  const std::string error = output->geterror();
+  file.close();
+  if (file.error_code() != 0) fail(path, std::generic_category().message(file.error_code()));
+  if (!written) fail(path, error);
   pending.commit();
 }
 
