@@ -95,12 +95,21 @@ void check_header(Bytes bytes, std::string_view format, std::string_view name) {
   }
 }
 
-/// These formats can't pack more than about 1,030 bytes into one: a small file that promises a
-/// huge picture is damaged, and its memory is not asked for.
-void check_promise(Bytes bytes, std::string_view format, std::size_t pixel_bytes,
+/// How many bytes of a picture one byte of its file can hold at most (fewer than 8 bits a channel
+/// become 8, half floats 32); 0: not known.
+std::size_t largest_packing(std::string_view format, std::string_view compression) {
+  if (format != "tiff" && format != "openexr") return 2100;
+  if (compression.empty() || compression == "none") return 16;
+  if (compression == "zip" || compression == "zips") return 2100;
+  if (compression == "lzw") return 6000;
+  if (compression == "packbits" || compression == "rle") return 512;
+  return 0;
+}
+
+/// A small file that promises a huge picture is damaged, and its memory is not asked for.
+void check_promise(Bytes bytes, std::size_t packing, std::size_t pixel_bytes,
                    std::string_view name) {
-  if (format == "tiff" || format == "openexr") return;
-  if (pixel_bytes / 2100 <= bytes.size() + 4096) return;
+  if (packing == 0 || pixel_bytes / packing <= bytes.size() + 4096) return;
   throw IoError("the image " + quoted(name) + " is damaged or truncated: it is far too short for " +
                 "the size that it states");
 }
@@ -172,7 +181,8 @@ RawImage read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, std::
   const auto pixel_bytes = static_cast<std::size_t>(spec.width) *
                            static_cast<std::size_t>(spec.height) *
                            static_cast<std::size_t>(channels * RawImage::code_size(type));
-  check_promise(bytes, format, pixel_bytes, name);
+  const std::string compression = spec.get_string_attribute("compression");
+  check_promise(bytes, largest_packing(format, compression), pixel_bytes, name);
   RawImage image(spec.width, spec.height, channels, type);
   const bool done = input.read_image(0, 0, 0, channels, library_type(type), image.data());
   if (!done || input.has_error()) {
