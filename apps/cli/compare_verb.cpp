@@ -26,6 +26,10 @@ struct CompareFlags {
 
 Image<Vec3f> read_normals(const std::filesystem::path& path) {
   RawImage codes = read_image(path);
+  if (codes.channels() < 2) {
+    throw InvalidInput("'" + path.string() +
+                       "': a normal map needs 2 to 4 channels; this one has 1");
+  }
   // Two maps of one kind: only how codes stand for numbers is guessed, not the signs.
   NormalConvention convention = guess_convention(codes).convention;
   convention.space = convention.two_channel ? NormalSpace::Tangent : NormalSpace::Object;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/options.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/io/image_file.h"
 
@@ -83,6 +84,27 @@ NormalMap fit_size(NormalMap map, int size) {
   return resize(map, scaled(map.width()), scaled(map.height()), type);
 }
 
+/// What the guess says, and what the user's flags make of it.
+std::string said(const ConventionGuess& guess, const NormalConvention& convention) {
+  if (convention.space == guess.convention.space &&
+      convention.green_down == guess.convention.green_down) {
+    return guess.sentence;
+  }
+  return "read as " + std::string(name_of(convention.space)) + " space, green " +
+         (convention.green_down ? "down" : "up") + ", as the flags say; it looks like " +
+         guess.sentence;
+}
+
+/// Says which file, where the error could not.
+template <class F>
+auto naming(const std::string& file, const F& job) {
+  try {
+    return job();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput("'" + file + "': " + error.what());
+  }
+}
+
 NormalMap open_normals(const MapSource& source, const std::string& set_name,
                        const OpenOptions& options, OpenedDocument& opened, OpenedSet& info,
                        const Progress& progress) {
@@ -94,10 +116,10 @@ NormalMap open_normals(const MapSource& source, const std::string& set_name,
   info.tiff = extension == ".tif" || extension == ".tiff";
   info.imported_width = codes.width();
   info.imported_height = codes.height();
-  info.guess = guess_convention(codes);
+  info.guess = naming(info.normal_map, [&] { return guess_convention(codes); });
   const NormalConvention convention = choose_convention(*info.guess, options);
-  opened.notes.push_back(set_name + ": " + info.guess->sentence);
-  NormalMap map(std::move(codes), convention);
+  opened.notes.push_back(set_name + ": " + said(*info.guess, convention));
+  NormalMap map = naming(info.normal_map, [&] { return NormalMap(std::move(codes), convention); });
   if (source.scale != 1.0F) {
     map = apply_scale(map, source.scale);
     info.scale_applied = true;
