@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "verbs.h"
 
@@ -11,9 +13,23 @@ namespace {
 constexpr int failed = 1;
 constexpr int wrong_use = 2;
 
-int complain(const char* what) {
-  std::fprintf(stderr, "normalshop: %s\n", what);
-  return failed;
+/// One line, whatever the message holds.
+int complain(std::string what, int exit_code = failed) {
+  std::replace(what.begin(), what.end(), '\n', ' ');
+  std::fprintf(stderr, "normalshop: %s\n", what.c_str());
+  return exit_code;
+}
+
+int complain_about_flags(const CLI::App& app, const CLI::ParseError& error) {
+  const auto verbs = app.get_subcommands();
+  if (verbs.empty()) {
+    const auto unknown = app.remaining();
+    const std::string what = unknown.empty() ? "a verb is missing"
+                                             : "there is no verb or flag '" + unknown.front() + "'";
+    return complain(what + "; see normalshop --help", wrong_use);
+  }
+  const std::string verb = verbs.front()->get_name();
+  return complain(verb + ": " + error.what() + "; see normalshop " + verb + " --help", wrong_use);
 }
 
 }  // namespace
@@ -34,7 +50,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : wrong_use;
+    return e.get_exit_code() == 0 ? app.exit(e) : complain_about_flags(app, e);
   } catch (const normalshop::Error& e) {
     return complain(e.what());
   } catch (const std::bad_alloc&) {

@@ -57,12 +57,12 @@ void run_render(const RenderFlags& flags) {
                           ? std::nullopt
                           : std::optional<Vec3f>(parse_vector(flags.center, "--center"));
   const OpenedDocument opened = open_document(flags.model.options());
-  print_notes(opened.notes);
   View view = resolve(spec, opened.document.mesh());
   if (center) view.center = *center;
   if (flags.width > 0.0F) view.width = view.height = flags.width;
   write_png_srgb(flags.output,
                  render(opened.document.mesh(), opened.document.storage(), view, options));
+  print_notes(opened.notes);
   if (flags.json) {
     const Value report = Value::Object{
         {"picture", flags.output.string()}, {"width", options.width}, {"height", options.height}};
