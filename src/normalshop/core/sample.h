@@ -63,8 +63,8 @@ struct WrappedTaps {
 
  private:
   static void split(float u, int size, int& first, int& second, float& fraction) {
-    const float repeat = static_cast<float>(floor_to_int(u));
-    const float at = (u - repeat) * static_cast<float>(size) - 0.5F;
+    const float inside = std::abs(u) < 1e9F ? u - static_cast<float>(floor_to_int(u)) : 0.0F;
+    const float at = inside * static_cast<float>(size) - 0.5F;
     const int left = floor_to_int(at);
     fraction = std::clamp(at - static_cast<float>(left), 0.0F, 1.0F);
     first = left < 0 ? size - 1 : std::min(left, size - 1);
