@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <hwy/cache_control.h>
 
 #include "normalshop/chart/grid.h"
 #include "normalshop/core/normal_map.h"
@@ -91,6 +90,13 @@ struct ChartTriangle {
   }
 };
 
+/// Fetches an address into the processor's caches; never fails.
+inline void prefetch([[maybe_unused]] const void* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#endif
+}
+
 /// The last triangles that a task used, ready loaded. T: default-constructible with
 /// load(mesh, grid, triangle).
 template <class T>
@@ -104,18 +110,18 @@ class TriangleCache {
   void announce_attributes(std::uint32_t triangle) const {
     if (ids_[triangle % slots] == triangle) return;
     const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-    hwy::Prefetch(&mesh_.triangles[triangle]);
-    hwy::Prefetch(&mesh_.uvs[corner]);
-    hwy::Prefetch(&mesh_.normals[corner]);
-    hwy::Prefetch(&mesh_.normals[corner + 2]);
+    prefetch(&mesh_.triangles[triangle]);
+    prefetch(&mesh_.uvs[corner]);
+    prefetch(&mesh_.normals[corner]);
+    prefetch(&mesh_.normals[corner + 2]);
     if (mesh_.tangents.empty()) return;
-    hwy::Prefetch(&mesh_.tangents[corner]);
-    hwy::Prefetch(&mesh_.tangents[corner + 2]);
+    prefetch(&mesh_.tangents[corner]);
+    prefetch(&mesh_.tangents[corner + 2]);
   }
   void announce_positions(std::uint32_t triangle) const {
     if (ids_[triangle % slots] == triangle) return;
     for (const std::uint32_t vertex : mesh_.triangles[triangle]) {
-      hwy::Prefetch(&mesh_.positions[vertex]);
+      prefetch(&mesh_.positions[vertex]);
     }
   }
   /// Both for a row of triangles; `later` is the row after next.
