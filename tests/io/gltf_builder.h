@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "normalshop/io/model.h"
 #include "normalshop/io/detail/uri.h"
+#include "normalshop/io/model.h"
 
 namespace normalshop::test {
 

@@ -9,9 +9,9 @@
 #include "normalshop/core/random.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/io/atomic_file.h"
+#include "normalshop/io/detail/polygon.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/model.h"
-#include "normalshop/io/detail/polygon.h"
 
 namespace normalshop {
 namespace {
