@@ -34,18 +34,17 @@ HWY_INLINE V3 scaled(const V3& a, V f) {
   return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
 }
 
-/// Component `k` of what the columns of m stand for, at weights b1 and b2.
-HWY_INLINE V mix(const Mat3f& m, Eigen::Index k, V b1, V b2) {
+HWY_INLINE V mix(float origin, float f1, float f2, V b1, V b2) {
   const D d;
-  return hn::Add(hn::Add(hn::Set(d, m(k, 0)), hn::Mul(b1, hn::Set(d, m(k, 1)))),
-                 hn::Mul(b2, hn::Set(d, m(k, 2))));
+  return hn::Add(hn::Add(hn::Set(d, origin), hn::Mul(b1, hn::Set(d, f1))),
+                 hn::Mul(b2, hn::Set(d, f2)));
 }
 
 HWY_INLINE void store_mix(const Mat3f& m, V b1, V b2, std::size_t i, PixelRow::Vectors& out) {
   const D d;
-  hn::StoreU(mix(m, 0, b1, b2), d, &out.x[i]);
-  hn::StoreU(mix(m, 1, b1, b2), d, &out.y[i]);
-  hn::StoreU(mix(m, 2, b1, b2), d, &out.z[i]);
+  hn::StoreU(mix(m(0, 0), m(0, 1), m(0, 2), b1, b2), d, &out.x[i]);
+  hn::StoreU(mix(m(1, 0), m(1, 1), m(1, 2), b1, b2), d, &out.y[i]);
+  hn::StoreU(mix(m(2, 0), m(2, 1), m(2, 2), b1, b2), d, &out.z[i]);
 }
 
 void interpolate_run(const PixelTriangle& t, int x, int y, int begin, int end, PixelRow& row) {
@@ -53,12 +52,12 @@ void interpolate_run(const PixelTriangle& t, int x, int y, int begin, int end, P
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0F);
-  const float py = static_cast<float>(y) - t.points(1, 0);
+  const float py = static_cast<float>(y) - t.y0;
   const V dy1 = hn::Set(d, py * t.dy.x());
   const V dy2 = hn::Set(d, py * t.dy.y());
   for (int i = begin; i < end; i += lanes) {
     const auto k = static_cast<std::size_t>(i);
-    const V px = hn::Sub(hn::Iota(d, static_cast<float>(x + i)), hn::Set(d, t.points(0, 0)));
+    const V px = hn::Sub(hn::Iota(d, static_cast<float>(x + i)), hn::Set(d, t.x0));
     V b1 = hn::Add(hn::Mul(px, hn::Set(d, t.dx.x())), dy1);
     V b2 = hn::Add(hn::Mul(px, hn::Set(d, t.dx.y())), dy2);
     // Back into the triangle: a pixel centre may lie a rounding outside it.
@@ -69,8 +68,8 @@ void interpolate_run(const PixelTriangle& t, int x, int y, int begin, int end, P
     b2 = hn::Mul(b2, shrink);
     store_mix(t.normals, b1, b2, k, row.normal);
     store_mix(t.tangents, b1, b2, k, row.tangent);
-    hn::StoreU(mix(t.uvs, 0, b1, b2), d, &row.u[k]);
-    hn::StoreU(mix(t.uvs, 1, b1, b2), d, &row.v[k]);
+    hn::StoreU(mix(t.uv.x(), t.uv1.x(), t.uv2.x(), b1, b2), d, &row.u[k]);
+    hn::StoreU(mix(t.uv.y(), t.uv1.y(), t.uv2.y(), b1, b2), d, &row.v[k]);
     hn::StoreU(hn::Set(d, t.sign), d, &row.sign[k]);
   }
 }
@@ -86,10 +85,24 @@ HWY_INLINE void store_unit(const V3& v, V length_squared, hn::Mask<D> keep, Vec3
                         reinterpret_cast<float*>(out));
 }
 
-void base_normals(int count, PixelRow& row) {
+HWY_INLINE V3 turn(const View& view, PixelRow::Vectors& v, std::size_t i) {
+  const D d;
+  const V3 in = load(v, i);
+  const auto along = [&](const Vec3f& axis) {
+    return dot(in, {hn::Set(d, axis.x()), hn::Set(d, axis.y()), hn::Set(d, axis.z())});
+  };
+  const V3 out{along(view.right), along(view.up), along(view.direction)};
+  hn::Store(out.x, d, &v.x[i]);
+  hn::Store(out.y, d, &v.y[i]);
+  hn::Store(out.z, d, &v.z[i]);
+  return out;
+}
+
+void base_normals(int count, const View& view, PixelRow& row) {
   const D d;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(d)) {
-    const V3 n = load(row.normal, i);
+    const V3 n = turn(view, row.normal, i);
+    turn(view, row.tangent, i);
     const V squared = dot(n, n);
     const auto keep =
         hn::And(hn::Gt(hn::Load(d, &row.seen[i]), hn::Zero(d)), hn::Gt(squared, hn::Zero(d)));
@@ -155,20 +168,35 @@ HWY_EXPORT(details);
 HWY_EXPORT(colors);
 
 void PixelTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
-  ChartTriangle::load(mesh, grid, triangle);
-  const Vec3f ab = points.col(1);
-  const Vec3f ac = points.col(2);
-  const float area = ab.x() * ac.y() - ac.x() * ab.y();
+  const Vec3u& index = mesh.triangles[triangle];
+  const Vec3f& p0 = mesh.positions[index[0]];
+  const Vec3f origin = grid.project(p0);
+  x0 = origin.x();
+  y0 = origin.y();
+  const float scale = 1.0F / grid.pixel;
+  const Vec3f right = grid.view.right * scale;
+  const Vec3f down = grid.view.up * -scale;
+  const Vec3f ab = mesh.positions[index[1]] - p0;
+  const Vec3f ac = mesh.positions[index[2]] - p0;
+  const float abx = ab.dot(right);
+  const float aby = ab.dot(down);
+  const float acx = ac.dot(right);
+  const float acy = ac.dot(down);
+  const float area = abx * acy - acx * aby;
   const float inverse = area != 0.0F ? 1.0F / area : 0.0F;
-  dx = {ac.y() * inverse, -ab.y() * inverse};
-  dy = {-ac.x() * inverse, ab.x() * inverse};
+  dx = {acy * inverse, -aby * inverse};
+  dy = {-acx * inverse, abx * inverse};
   const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-  const auto uv = [&](std::size_t k) {
-    const Vec2f& at = mesh.uvs[corner + k];
-    return Vec3f(at.x(), at.y(), 0.0F);
-  };
-  uvs = differences(uv(0), uv(1), uv(2));
+  const Vec3f* n = &mesh.normals[corner];
+  normals = ChartTriangle::differences(n[0], n[1], n[2]);
+  uv = mesh.uvs[corner];
+  uv1 = mesh.uvs[corner + 1] - uv;
+  uv2 = mesh.uvs[corner + 2] - uv;
   texture_set = mesh.texture_sets[triangle];
+  if (mesh.tangents.empty()) return;
+  const Vec4f* t = &mesh.tangents[corner];
+  tangents = ChartTriangle::differences(t[0].head<3>(), t[1].head<3>(), t[2].head<3>());
+  sign = t[0].w() + t[1].w() + t[2].w() < 0.0F ? -1.0F : 1.0F;
 }
 
 void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int end,
@@ -176,8 +204,8 @@ void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int
   HWY_DYNAMIC_DISPATCH(interpolate_run)(triangle, x, y, begin, end, row);
 }
 
-void finish_base_normals(int count, PixelRow& row) {
-  HWY_DYNAMIC_DISPATCH(base_normals)(count, row);
+void finish_base_normals(int count, const View& view, PixelRow& row) {
+  HWY_DYNAMIC_DISPATCH(base_normals)(count, view, row);
 }
 
 void finish_colors(int count, PixelRow& row) { HWY_DYNAMIC_DISPATCH(colors)(count, row); }

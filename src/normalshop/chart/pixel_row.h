@@ -8,12 +8,21 @@
 /// Pull's arithmetic for a row of pixels at once, private to floor 4.
 namespace normalshop {
 
-/// A triangle with everything else that its pixels share.
-struct PixelTriangle : ChartTriangle {
-  std::uint32_t texture_set = 0;
+/// What the pixels of a triangle share. Vectors stay in object space: turning the pixels' is
+/// cheaper than turning the triangles'.
+struct PixelTriangle {
+  float x0 = 0.0F;  ///< pixel coordinates of corner 0
+  float y0 = 0.0F;
   Vec2f dx = Vec2f::Zero();  ///< of the weights of corners 1 and 2, per pixel from corner 0
   Vec2f dy = Vec2f::Zero();
-  Mat3f uvs = Mat3f::Zero();  ///< columns like `points`, third row 0
+  // Columns as in ChartTriangle.
+  Mat3f normals = Mat3f::Zero();
+  Mat3f tangents = Mat3f::Zero();
+  float sign = 1.0F;
+  Vec2f uv = Vec2f::Zero();
+  Vec2f uv1 = Vec2f::Zero();  ///< corner 1 - corner 0
+  Vec2f uv2 = Vec2f::Zero();
+  std::uint32_t texture_set = 0;
 
   void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle);
 };
@@ -47,8 +56,9 @@ struct PixelRow {
 /// coordinates (x, y). May write beyond `end`: runs come from left to right.
 void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int end,
                      PixelRow& row);
-/// Fills base_normals: unit, or zero where nothing is seen.
-void finish_base_normals(int count, PixelRow& row);
+/// Turns normals and tangents into chart axes and fills base_normals: unit, or zero where nothing
+/// is seen.
+void finish_base_normals(int count, const View& view, PixelRow& row);
 /// Fills details and regular from `stored`: unit, or zero where nothing is seen.
 void finish_details(int count, PixelRow& row);
 /// Fills colors from `color`; zero where nothing is seen.

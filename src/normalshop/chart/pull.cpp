@@ -17,7 +17,11 @@ class Pull {
  public:
   Pull(const Mesh& mesh, const StorageAtlas& storage, const PullOptions& options,
        EditingChart& chart)
-      : storage_(storage), options_(options), chart_(chart), triangles_(mesh, chart.grid) {}
+      : mesh_(mesh),
+        storage_(storage),
+        options_(options),
+        chart_(chart),
+        triangles_(mesh, chart.grid) {}
 
   void fill(const Rect& rect) {
     for (int y = rect.y0 - 4; y < rect.y0; ++y) announce(rect, y);
@@ -36,6 +40,7 @@ class Pull {
     int begin;
     int end;
     std::uint32_t texture_set;
+    std::uint32_t node;  ///< of object-space normals
   };
 
   /// Has the triangles of the rows 2 and 4 below y fetched.
@@ -52,6 +57,7 @@ class Pull {
   void read_maps(const Run& run);
   Vec3f irregular_detail(std::size_t i) const;
 
+  const Mesh& mesh_;
   const StorageAtlas& storage_;
   const PullOptions& options_;
   EditingChart& chart_;
@@ -76,10 +82,12 @@ bool Pull::find_runs(int y, int x0, int x1) {
     const PixelTriangle& triangle = triangles_.get(id);
     interpolate_run(triangle, x0, y, begin - x0, x - x0, row_);
     Run* last = run_count_ > 0 ? &runs_[run_count_ - 1] : nullptr;
-    if (last != nullptr && last->end == begin - x0 && last->texture_set == triangle.texture_set) {
+    const std::uint32_t node = mesh_.nodes.empty() ? 0 : mesh_.nodes[id];
+    if (last != nullptr && last->end == begin - x0 && last->node == node &&
+        last->texture_set == triangle.texture_set) {
       last->end = x - x0;
     } else {
-      runs_[run_count_++] = {begin - x0, x - x0, triangle.texture_set};
+      runs_[run_count_++] = {begin - x0, x - x0, triangle.texture_set, node};
     }
   }
   return run_count_ > 0;
@@ -93,7 +101,7 @@ void Pull::clear_row(int y, int x0, int count) {
 }
 
 void Pull::fill_row(int y, int x0, int count) {
-  finish_base_normals(count, row_);
+  finish_base_normals(count, chart_.grid.view, row_);
   std::copy_n(row_.base_normals.data(), count, chart_.base_normal.row(y) + x0);
   for (std::size_t i = 0; i < run_count_; ++i) read_maps(runs_[i]);
   if (options_.albedo) {
@@ -121,10 +129,13 @@ void Pull::read_maps(const Run& run) {
   if (!options_.normals) return;
   set.normals.sample(u, v, count, &row_.stored.x[begin], &row_.stored.y[begin],
                      &row_.stored.z[begin]);
-  if (set.normals.convention().space == NormalSpace::Tangent) return;
+  const NormalSpace space = set.normals.convention().space;
+  if (space == NormalSpace::Tangent) return;
+  const bool in_node = space == NormalSpace::Object && !mesh_.nodes.empty();
+  const Mat3f node = in_node ? mesh_.node_normals[run.node] : Mat3f(Mat3f::Identity());
   for (std::size_t i = begin; i < static_cast<std::size_t>(run.end); ++i) {
-    const Vec3f n =
-        chart_.grid.view.to_chart(Vec3f(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]));
+    const Vec3f stored(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]);
+    const Vec3f n = chart_.grid.view.to_chart(node * stored);
     row_.stored.x[i] = n.x();
     row_.stored.y[i] = n.y();
     row_.stored.z[i] = n.z();
