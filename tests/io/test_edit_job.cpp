@@ -1,0 +1,299 @@
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "io/temp_folder.h"
+#include "support/data.h"
+#include "support/meshes.h"
+#include <gtest/gtest.h>
+
+#include "normalshop/core/error.h"
+#include "normalshop/core/parallel.h"
+#include "normalshop/core/slope.h"
+#include "normalshop/io/atomic_file.h"
+#include "normalshop/io/edit_report.h"
+#include "normalshop/io/file_assets.h"
+#include "normalshop/io/gltf_export.h"
+#include "normalshop/io/image_file.h"
+#include "normalshop/surface/convert_space.h"
+
+/// Models opened, edited and exported, from files to files.
+namespace normalshop {
+namespace {
+
+namespace fs = std::filesystem;
+using test::data_file;
+using test::TempFolder;
+
+bool same_codes(const RawImage& a, const RawImage& b) {
+  return a.width() == b.width() && a.height() == b.height() && a.channels() == b.channels() &&
+         a.type() == b.type() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+Recipe recipe(const std::string& edits, const fs::path& folder = ".") {
+  FileAssets assets(folder);
+  return parse_recipe(R"({"version": 1, "edits": [)" + edits + "]}", "test.json", assets);
+}
+
+std::string pen(const std::string& view, const std::string& strokes, double width,
+                const std::string& more = "") {
+  return R"({"operator": "pen", "view": )" + view + R"(, "options": {"width": )" +
+         std::to_string(width) + R"(, "height": )" + std::to_string(0.3 * width) +
+         R"(}, "strokes": )" + strokes + more + "}";
+}
+
+/// A normal map of smooth waves.
+RawImage waves(int width, int height, CodeType type) {
+  NormalMap map = flat_normal_map(width, height, type);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double u = 2.0 * std::numbers::pi * x / width;
+      const double v = 2.0 * std::numbers::pi * y / height;
+      map.set_normal(x, y,
+                     normal_from_slope(Vec2f(static_cast<float>(0.4 * std::sin(3.0 * u)),
+                                             static_cast<float>(0.4 * std::cos(2.0 * v)))));
+    }
+  }
+  return map.encode();
+}
+
+/// The mesh as a glTF file that names `map_name`.
+fs::path write_model_file(const TempFolder& folder, const Mesh& mesh, const std::string& map_name) {
+  const fs::path path = folder / "model.gltf";
+  std::vector<GltfMaterial> materials;
+  for (const std::string& name : mesh.texture_set_names) {
+    GltfMaterial material;
+    material.name = name;
+    material.normal_map = map_name;
+    materials.push_back(material);
+  }
+  export_gltf(path, mesh, materials);
+  return path;
+}
+
+OpenOptions head_options() {
+  OpenOptions options;
+  if (const auto model = data_file("lee_perry_smith/LeePerrySmith.glb")) {
+    options.model = *model;
+    options.normal_maps = {
+        data_file("lee_perry_smith/Infinite-Level_02_Tangent_SmoothUV.jpg")->string()};
+    options.flip_v = true;
+  }
+  return options;
+}
+
+OpenOptions bottle_options() {
+  OpenOptions options;
+  if (const auto model = data_file("khr_waterbottle/WaterBottle.gltf")) options.model = *model;
+  return options;
+}
+
+const char* const no_data = "the real data is not on this machine";
+
+struct Round {
+  double mean = 0.0;
+  double largest = 0.0;
+};
+
+/// Angles of two maps where triangles own the texels.
+Round covered_angles(const NormalMap& a, const NormalMap& b, const TexelMap& texels) {
+  Round round;
+  std::size_t count = 0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      if (texels.owner()(x, y) == no_triangle || a.normal(x, y).isZero()) continue;
+      const double angle = angle_degrees(a.normal(x, y), b.normal(x, y));
+      round.mean += angle;
+      round.largest = std::max(round.largest, angle);
+      ++count;
+    }
+  }
+  round.mean /= static_cast<double>(count);
+  return round;
+}
+
+/// Object space -> tangent space at 16 bit -> file -> object space at 16 bit, through the reader.
+Round object_round_trip(const OpenOptions& options, const TempFolder& folder) {
+  const OpenedDocument opened = open_document(options);
+  const auto exported = [&](const OpenedDocument& from, ExportPreset preset, const char* name) {
+    const fs::path path = folder / name;
+    write_image(path, export_map(from, 0, {preset, CodeType::U16}));
+    OpenOptions again = options;
+    again.size = 0;
+    again.normal_maps = {path.string()};
+    again.space = preset == ExportPreset::Object ? NormalSpace::Object : NormalSpace::Tangent;
+    again.green_down = false;
+    return open_document(again);
+  };
+  const OpenedDocument object = exported(opened, ExportPreset::Object, "object.png");
+  const OpenedDocument tangent = exported(object, ExportPreset::Gltf, "tangent.png");
+  const OpenedDocument back = exported(tangent, ExportPreset::Object, "back.png");
+  const StorageSet& first = object.document.storage().sets[0];
+  return covered_angles(first.normals, back.document.storage().sets[0].normals, first.texels);
+}
+
+TEST(EditJob, KeepsEveryCodeOfRealMapsWithoutAnEdit) {
+  for (const OpenOptions& options : {head_options(), bottle_options()}) {
+    if (options.model.empty()) GTEST_SKIP() << no_data;
+    const TempFolder folder;
+    const EditJob job = run_edit_job(options, {}, folder / "out", {});
+    const fs::path own = options.normal_maps.empty()
+                             ? *data_file("khr_waterbottle/WaterBottle_normal.png")
+                             : fs::path(options.normal_maps[0]);
+    EXPECT_TRUE(same_codes(read_image(own), read_image(job.files[0]))) << own;
+  }
+}
+
+TEST(EditJob, KeepsTheCodesAroundAnEditOfARealMap) {
+  const OpenOptions options = bottle_options();
+  if (options.model.empty()) GTEST_SKIP() << no_data;
+  const TempFolder folder;
+  const EditJob job =
+      run_edit_job(options, recipe(pen(R"("front")", "[[[-0.05, 0], [0.05, 0.01]]]", 0.006)),
+                   folder / "out", {});
+  const RawImage before = read_image(*data_file("khr_waterbottle/WaterBottle_normal.png"));
+  const RawImage after = read_image(job.files[0]);
+  const NormalMap& map = job.opened.document.storage().sets[0].normals;
+  ASSERT_GT(map.edited_count(), 1000U);
+  std::size_t changed = 0;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      const auto at = static_cast<std::ptrdiff_t>(x) * before.channels();
+      const bool same = std::memcmp(before.row_data(y) + at, after.row_data(y) + at,
+                                    static_cast<std::size_t>(before.channels())) == 0;
+      ASSERT_TRUE(same || map.edited(x, y)) << x << " " << y;
+      changed += same ? 0 : 1;
+    }
+  }
+  EXPECT_GT(changed, map.edited_count() / 2);
+}
+
+TEST(EditJob, ComesBackFromTangentSpaceOfTheHead) {
+  const TempFolder folder;
+  const OpenOptions options = head_options();
+  if (options.model.empty()) GTEST_SKIP() << no_data;
+  const Round round = object_round_trip(options, folder);
+  RecordProperty("mean_degrees", std::to_string(round.mean));
+  EXPECT_LE(round.mean, 0.02);
+}
+
+TEST(EditJob, ComesBackFromTangentSpaceOfTheBottle) {
+  const TempFolder folder;
+  OpenOptions options = bottle_options();
+  options.size = 1024;
+  if (options.model.empty()) GTEST_SKIP() << no_data;
+  const Round round = object_round_trip(options, folder);
+  RecordProperty("mean_degrees", std::to_string(round.mean));
+  EXPECT_LE(round.mean, 0.02);
+}
+
+TEST(EditJob, ComesBackFromTangentSpaceOfMirroredUvs) {
+  const TempFolder folder;
+  write_image(folder / "waves.png", waves(128, 128, CodeType::U16));
+  OpenOptions options;
+  options.model = write_model_file(folder, test::mirrored_pair(4), "waves.png");
+  EXPECT_LE(object_round_trip(options, folder).mean, 0.02);
+}
+
+/// An edit on the half whose UVs are the mirrored ones of the other.
+TEST(EditJob, EditsTheMirroredHalf) {
+  const TempFolder folder;
+  write_image(folder / "flat.png", flat_normal_map(256, 256, CodeType::U16).codes());
+  OpenOptions options;
+  options.model = write_model_file(folder, test::mirrored_pair(4), "flat.png");
+  options.green_down = false;
+  const std::string view = R"({"direction": [0, 0, 1], "center": [-0.5, 0.5, 0], "width": 1})";
+  // A ridge along y at x = -0.3: it rises towards it from both sides.
+  const EditJob job =
+      run_edit_job(options,
+                   recipe(R"({"operator": "pen", "view": )" + view +
+                          R"(, "options": {"profile": "bump", "width": 0.2, "height": 0.02},
+                 "strokes": [[[0.2, -0.3], [0.2, 0.3]]]})"),
+                   folder / "out", {});
+  const NormalMap& map = job.opened.document.storage().sets[0].normals;
+  // u = |x|: left of the ridge lies right in the map.
+  const Vec3f left = map.normal(static_cast<int>(0.34F * 256.0F), 128);
+  const Vec3f right = map.normal(static_cast<int>(0.26F * 256.0F), 128);
+  const Mesh& mesh = job.opened.document.mesh();
+  const TexelMap& texels = job.opened.document.storage().sets[0].texels;
+  ASSERT_FALSE(texels.shared().empty());
+  // The right half owns the texels: in its frame u runs right, so codes read by it lean outwards.
+  EXPECT_GT(std::abs(left.x()), 0.05F);
+  EXPECT_NEAR(left.x(), -right.x(), 0.02F);
+  std::uint32_t mirrored = no_triangle;
+  const auto wanted = static_cast<std::uint32_t>(128 * 256 + static_cast<int>(0.34F * 256.0F));
+  for (const SharedTexel& s : texels.shared()) {
+    if (s.texel == wanted) mirrored = s.triangle;
+  }
+  ASSERT_NE(mirrored, no_triangle);
+  const SurfacePoint point = texels.surface_point(mirrored, static_cast<int>(0.34F * 256.0F), 128);
+  EXPECT_LT(position_at(mesh, point).x(), -0.3F);
+  // In object space the slope left of a ridge faces left.
+  EXPECT_LT(frame_at(mesh, point, NormalSpace::Tangent).object_normal(left).x(), -0.05F);
+}
+
+TEST(EditJob, EditsWhereUvsRepeat) {
+  const TempFolder folder;
+  Mesh mesh = test::plane_grid(4);
+  const RawImage codes = waves(128, 128, CodeType::U8);
+  write_image(folder / "waves.png", codes);
+  std::array<RawImage, 2> results;
+  for (std::size_t k = 0; k < 2; ++k) {
+    OpenOptions options;
+    options.model = write_model_file(folder, mesh, "waves.png");
+    const EditJob job =
+        run_edit_job(options, recipe(pen(R"("front")", "[[[-0.4, 0.1], [0.4, -0.1]]]", 0.1)),
+                     folder / ("out" + std::to_string(k)), {});
+    EXPECT_GT(job.edits[0].pushed.changed, 500U);
+    results[k] = read_image(job.files[0]);
+    for (Vec2f& uv : mesh.uvs) uv += Vec2f(2.0F, -3.0F);
+  }
+  EXPECT_TRUE(same_codes(results[0], results[1]));
+}
+
+/// Two meshes on one atlas under a turned and scaled node: both are edited, lengths are those of
+/// the world.
+TEST(EditJob, EditsInTheWorldOfTheNodes) {
+  const TempFolder folder;
+  write_image(folder / "flat.png", flat_normal_map(256, 256, CodeType::U16).codes());
+  const fs::path path = write_model_file(folder, test::plane_grid(4), "flat.png");
+  std::string text = read_file(path);
+  // A quarter turn about x takes +z to -y; three times as large.
+  const std::string node = R"("mesh": 0)";
+  const std::size_t at =
+      text.find(node) != std::string::npos ? text.find(node) : text.find(R"("mesh":0)");
+  ASSERT_NE(at, std::string::npos) << text;
+  text.insert(at, R"("rotation": [0.70710678, 0, 0, 0.70710678], "scale": [3, 3, 3], )");
+  write_file(path, text);
+  OpenOptions options;
+  options.model = path;
+  const EditJob job = run_edit_job(
+      options,
+      recipe(pen(R"({"direction": [0, -1, 0], "up": [0, 0, 1]})", "[[[-1, 0], [1, 0]]]", 0.3)),
+      folder / "out", {});
+  const NormalMap& map = job.opened.document.storage().sets[0].normals;
+  int reach = 0;
+  for (int y = 0; y < 256; ++y) reach += map.edited(128, y) ? 1 : 0;
+  // 0.3 of 3 units are 26 of 256 texels; spread by what keeps a crease free of stairs.
+  EXPECT_NEAR(reach, 26, 8);
+}
+
+TEST(EditJob, DoesNotDependOnThreads) {
+  const TempFolder folder;
+  write_image(folder / "waves.png", waves(256, 256, CodeType::U8));
+  OpenOptions options;
+  options.model = write_model_file(folder, test::uv_sphere(64, 32), "waves.png");
+  const Recipe edits =
+      recipe(pen(R"("left")", "[[[-0.6, 0.3], [0.6, -0.2]]]", 0.2) +
+             R"(, {"operator": "smooth", "view": "front", "options": {"sigma": 0.05}})");
+  const EditJob many = run_edit_job(options, edits, folder / "many", {});
+  const ThreadLimit one(1);
+  const EditJob single = run_edit_job(options, edits, folder / "one", {});
+  ASSERT_EQ(many.files.size(), single.files.size());
+  for (std::size_t i = 0; i + 1 < many.files.size(); ++i) {  // the last is the report, with times
+    EXPECT_EQ(read_file(many.files[i]), read_file(single.files[i])) << many.files[i];
+  }
+}
+
+}  // namespace
+}  // namespace normalshop
