@@ -23,7 +23,7 @@ class ModelFlags {
 
 /// "1,2.5,-3" as a vector. Throws CLI::ValidationError naming the flag.
 Vec3f parse_vector(const std::string& text, const std::string& flag);
-/// A NamedView's name or a direction towards the viewer; null when it is neither.
+/// A NamedView's name or a direction towards the viewer. Throws CLI::ValidationError otherwise.
 ViewSpec parse_view(const std::string& text);
 
 /// Prints notes to standard error, where they don't disturb what another program reads.

@@ -18,9 +18,10 @@ constexpr auto names_of(EditMode) { return std::array<std::string_view, 2>{"view
 /// whose unit base normal in chart axes is `base` (base.z > 0). All normals are in chart axes.
 ///
 /// View: slopes of n. Base: h_u = -<b_u, n> / <base, n> with b_u = (1, 0, -base.x / base.z),
-/// likewise v (algorithms.md 12.3's correction of thesis 4.3): both are the surface gradient of n
-/// with respect to one direction, and both return what went in. Saturates at the horizon of that
-/// direction.
+/// likewise v. (Thesis 4.3 takes f_u = (1, 0, -n.x / n.z), which is that of the pixel and not of
+/// the base point that moves: on tilted surface it does not return what went in.) Both modes are
+/// the surface gradient of n with respect to one direction, and both return what went in. Saturates
+/// at the horizon of that direction.
 inline Vec2f gradient_from_normal(const Vec3f& n, const Vec3f& base, EditMode mode) {
   if (mode == EditMode::View) return slope_from_normal(n);
   const Vec3f sg = surface_gradient(n, base);
@@ -29,7 +30,8 @@ inline Vec2f gradient_from_normal(const Vec3f& n, const Vec3f& base, EditMode mo
 }
 
 /// Base: the tangential vector with <sg, b_u> = h_u and <sg, b_v> = h_v subtracted from the base
-/// normal, which is f_u x f_v for f_u = b_u + h_u N (the dropped term h N_u is bounded by 12.2).
+/// normal, which is f_u x f_v for f_u = b_u + h_u N. The term h N_u is dropped: it is small while h
+/// is small beside the base surface's radius of curvature.
 inline Vec3f normal_from_gradient(const Vec2f& gradient, const Vec3f& base, EditMode mode) {
   if (mode == EditMode::View) return normal_from_slope(gradient);
   const float along = gradient.x() * base.x() + gradient.y() * base.y();

@@ -31,7 +31,7 @@ struct PushResult {
 /// point that they stand for. Texels shared by several triangles take the first one's edit that
 /// reaches them. Deterministic for any number of threads.
 ///
-/// Sources: thesis 5.3.3; algorithms.md 10.3 (gather, delta) and 10.4 (gutter).
+/// Source: thesis 5.3.3, with differences gathered by texels instead of values scattered by pixels.
 PushResult push(const Mesh& mesh, const EditingChart& chart, const ChartEdit& edit,
                 StorageAtlas& storage);
 

@@ -12,7 +12,7 @@
 
 namespace normalshop {
 
-/// A view as a recipe gives it; height 0: as wide as high.
+/// A view as a recipe gives it; height 0: as high as wide.
 struct FreeView {
   Vec3f direction = Vec3f::UnitZ();  ///< from the surface to the viewer
   Vec3f up = Vec3f::UnitY();

@@ -81,7 +81,7 @@ void check_size(std::int64_t width, std::int64_t height, std::string_view name) 
                      std::to_string(max_image_pixels) + " in all");
 }
 
-/// Size in a PNG's or JPEG's header, which can be told before the library allocates anything.
+/// Size in a PNG's or TGA's header, which can be told before the library allocates anything.
 void check_header(Bytes bytes, std::string_view format, std::string_view name) {
   const auto big_endian = [&](std::size_t at) {
     std::int64_t value = 0;

@@ -161,7 +161,7 @@ Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& 
   return maps;
 }
 
-/// The user's choice, else the model's; a model's colour map that is missing is only noted.
+/// The user's choice, else the model's.
 std::optional<MapSource> choose(const std::optional<MapSource>& given,
                                 const std::optional<MapSource>& own) {
   return given ? given : own;

@@ -34,7 +34,7 @@ std::array<std::uint32_t, 5> attribute_key(const Mesh& mesh, std::uint32_t corne
   return {bits(n.x()), bits(n.y()), bits(n.z()), bits(uv.x()), bits(uv.y())};
 }
 
-/// Derivatives of a triangle; see Derivatives::tangent for what they are good for.
+/// What a triangle gives to the tangents at its corners.
 struct Derivatives {
   Vec3d tangent{0.0, 0.0, 0.0};  ///< unit dP/du
   bool preserving = false;       ///< not mirrored in the map

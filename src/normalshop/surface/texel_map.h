@@ -44,9 +44,9 @@ struct GutterTexel {
       owner;       ///< triangle of the chart beside it; its frame, extrapolated, decodes the texel
   float owner_b1;  ///< extrapolated weights of the owner's corners 1 and 2 at the texel; further
   float owner_b2;  ///< out than the triangle is large they stop (no weight falls below -1)
-  SurfacePoint
-      source;  ///< the surface point that the texel stands for: across the seam, at the same
-               ///< distance from it on the surface; on the border itself where nothing lies across
+  SurfacePoint source;  ///< the surface point that the texel stands for: across the seam, at the
+                        ///< same distance from it on the surface; on the border itself where
+                        ///< nothing of the texture set lies across
 };
 
 /// Which triangle each texel of one texture set's map shows: a texel belongs to a triangle that
