@@ -84,8 +84,6 @@ struct OperatorType {
 };
 /// All operators, in the order of the documentation.
 const std::vector<OperatorType>& operator_types();
-/// Null when there is none of that name.
-const OperatorType* find_operator(std::string_view name);
 
 /// The operators and their options, for `describe` and later the studio.
 Value describe_operators();

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "normalshop/document/edit_operator.h"
 #include "normalshop/document/operators/operators.h"
 
@@ -9,13 +7,6 @@ const std::vector<OperatorType>& operator_types() {
   static const std::vector<OperatorType> types{pen_operator(), stamp_operator(), text_operator(),
                                                smooth_operator(), sharpen_operator()};
   return types;
-}
-
-const OperatorType* find_operator(std::string_view name) {
-  const auto& types = operator_types();
-  const auto found =
-      std::find_if(types.begin(), types.end(), [&](const auto& t) { return t.name == name; });
-  return found == types.end() ? nullptr : &*found;
 }
 
 Value describe_operators() {

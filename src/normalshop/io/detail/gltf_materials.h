@@ -17,8 +17,6 @@ struct UvTransform {
   double rotation = 0.0;
   std::array<double, 2> scale{1.0, 1.0};
 
-  bool operator==(const UvTransform&) const = default;
-  bool is_identity() const { return *this == UvTransform{}; }
   Vec2f apply(const Vec2f& uv) const;
 };
 
