@@ -248,7 +248,7 @@ std::vector<Write> collect(const std::vector<Item>& items, const Mesh& mesh, con
 /// else a filter would leave there what it takes away on the other side of the seam.
 Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                              const PushTriangle& source, const Effect& effect) const {
-  if (g.source.triangle == g.owner || mesh_.texture_sets[g.source.triangle] != index_) return own;
+  if (g.source.triangle == g.owner) return own;
   const Vec3f weights(1.0F, g.source.b1, g.source.b2);
   const std::size_t corner = 3 * static_cast<std::size_t>(g.source.triangle);
   const Vec2f uv = interpolate(mesh_.uvs[corner], mesh_.uvs[corner + 1], mesh_.uvs[corner + 2],
@@ -268,10 +268,7 @@ Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec
 std::vector<Write> SetPush::gutter_writes() const {
   const View& view = sampler_.grid().view;
   const auto visit = [&](const GutterTexel& g, Cache& triangles, std::vector<Write>& out) {
-    // The surface may run on in another texture set, whose candidates are not known here.
-    if (mesh_.texture_sets[g.source.triangle] == index_ && candidate_[g.source.triangle] == 0) {
-      return;
-    }
+    if (candidate_[g.source.triangle] == 0) return;
     Vec3f base;
     const PushTriangle source = triangles.get(g.source.triangle);
     const Effect effect = sampler_.at(source, {1.0F, g.source.b1, g.source.b2}, base);
@@ -327,7 +324,7 @@ Tally SetPush::write(const std::vector<Write>& writes) {
 
 Tally SetPush::run() {
   find_candidates();
-  // Before any texel changes: these read their own normals only, but the owners' effects too.
+  // Before any texel changes: the gutter reads normals across its seams.
   const std::vector<Write> shared = shared_writes();
   const std::vector<Write> gutter = gutter_writes();
   std::vector<int> tiles;
