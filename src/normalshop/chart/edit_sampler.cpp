@@ -53,11 +53,12 @@ bool EditSampler::acts(int x, int y) const {
 }
 
 bool EditSampler::reaches(float x0, float y0, float x1, float y1) const {
-  const Rect pixels = intersect(
-      {static_cast<int>(std::floor(std::max(x0, -1.0F))),
-       static_cast<int>(std::floor(std::max(y0, -1.0F))), static_cast<int>(std::min(x1, 1e6F)) + 1,
-       static_cast<int>(std::min(y1, 1e6F)) + 1},
-      chart_.ids.depth.rect());
+  // Whatever a stray vertex gives stays within what int holds.
+  const auto bounded = [](float v) { return v > -1.0F ? std::min(v, 1e6F) : -1.0F; };
+  const Rect pixels =
+      intersect({floor_to_int(bounded(x0)), floor_to_int(bounded(y0)),
+                 static_cast<int>(bounded(x1)) + 1, static_cast<int>(bounded(y1)) + 1},
+                chart_.ids.depth.rect());
   if (pixels.empty()) return false;
   for (int y = pixels.y0 / block; y <= (pixels.y1 - 1) / block; ++y) {
     for (int x = pixels.x0 / block; x <= (pixels.x1 - 1) / block; ++x) {
