@@ -38,8 +38,8 @@ AngularError summarize(MaskView degrees) {
   out.pixels = values.size();
   if (values.empty()) return out;
   const auto rank = [&](double share) {
-    const auto i = std::min(values.size() - 1,
-                            static_cast<std::size_t>(share * static_cast<double>(values.size())));
+    const double place = std::ceil(share * static_cast<double>(values.size()));
+    const auto i = static_cast<std::size_t>(std::max(place, 1.0)) - 1;
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values.end());
     return static_cast<double>(values[i]);
   };
