@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "normalshop/chart/raster_kernel.h"
@@ -188,7 +189,16 @@ void draw_large(const Vertex& a, const Vertex& b, const Vertex& c, const Box& bo
 void draw_all(const TileRect& rect, std::span<const std::uint32_t> triangles,
               const Vertex* vertices, const Vec3u* indices, Tile& tile) {
   constexpr int small = 64 * unit;  // keeps the edge functions of draw_small within 32 bits
-  for (const std::uint32_t id : triangles) {
+  constexpr std::size_t ahead = 8;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (i + 2 * ahead < triangles.size()) hwy::Prefetch(&indices[triangles[i + 2 * ahead]]);
+    if (i + ahead < triangles.size()) {
+      const Vec3u& next = indices[triangles[i + ahead]];
+      hwy::Prefetch(&vertices[next[0]]);
+      hwy::Prefetch(&vertices[next[1]]);
+      hwy::Prefetch(&vertices[next[2]]);
+    }
+    const std::uint32_t id = triangles[i];
     const Vec3u& index = indices[id];
     const Vertex& a = vertices[index[0]];
     const Vertex* b = &vertices[index[1]];

@@ -19,14 +19,14 @@ using Vertex = Rasterizer::Vertex;
 constexpr std::size_t chunk_size = 16384;
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 
-/// Pixels whose centres lie in a triangle's box, inclusive; empty when x0 > x1 or y0 > y1.
-Rect covered_pixels(const Vertex& a, const Vertex& b, const Vertex& c, int width, int height) {
-  const auto first = [](int v) { return (v + 127) >> 8; };
-  const auto last = [](int v) { return (v - 128) >> 8; };
-  return {std::max(first(std::min({a.x, b.x, c.x})), 0),
-          std::max(first(std::min({a.y, b.y, c.y})), 0),
-          std::min(last(std::max({a.x, b.x, c.x})), width - 1) + 1,
-          std::min(last(std::max({a.y, b.y, c.y})), height - 1) + 1};
+/// Pixels whose centres lie in a triangle's box; empty when x1 <= x0 or y1 <= y0.
+inline Rect covered_pixels(const Vertex& a, const Vertex& b, const Vertex& c, int width,
+                           int height) {
+  const auto first = [](int u, int v, int w) { return (std::min(std::min(u, v), w) + 127) >> 8; };
+  const auto last = [](int u, int v, int w) { return (std::max(std::max(u, v), w) - 128) >> 8; };
+  return {std::max(first(a.x, b.x, c.x), 0), std::max(first(a.y, b.y, c.y), 0),
+          std::min(last(a.x, b.x, c.x), width - 1) + 1,
+          std::min(last(a.y, b.y, c.y), height - 1) + 1};
 }
 
 std::int64_t twice_area(const Vertex& a, const Vertex& b, const Vertex& c) {
@@ -34,6 +34,12 @@ std::int64_t twice_area(const Vertex& a, const Vertex& b, const Vertex& c) {
 }
 
 void add_to_tiles(Rasterizer::Chunk& chunk, const Rect& pixels, int columns, std::uint32_t id) {
+  const int tile_x = pixels.x0 / tile_size;
+  const int tile_y = pixels.y0 / tile_size;
+  if (tile_x == (pixels.x1 - 1) / tile_size && tile_y == (pixels.y1 - 1) / tile_size) {
+    chunk.unsorted.push_back({static_cast<std::uint32_t>(tile_y * columns + tile_x), id});
+    return;
+  }
   for (int ty = pixels.y0 / tile_size; ty <= (pixels.y1 - 1) / tile_size; ++ty) {
     for (int tx = pixels.x0 / tile_size; tx <= (pixels.x1 - 1) / tile_size; ++tx) {
       chunk.unsorted.push_back({static_cast<std::uint32_t>(ty * columns + tx), id});
