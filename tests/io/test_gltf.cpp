@@ -219,11 +219,15 @@ TEST(Gltf, WhatIsMissingIsSaid) {
 
   GltfBuilder some;
   some.square();
-  some.square()["attributes"].erase("TEXCOORD_0");
+  some.json["materials"] = {{{"name", "glass"}}};
+  GltfBuilder::Json& glass = some.square();
+  glass["attributes"].erase("TEXCOORD_0");
+  glass["material"] = 0;
   some.square()["mode"] = 0;
   some.square()["attributes"].erase("NORMAL");
   const Model model = some.read();
   EXPECT_EQ(model.mesh.triangle_count(), 4U);
+  EXPECT_EQ(model.texture_sets.size(), 1U);  // what has no UVs has no map
   EXPECT_TRUE(mentions(model.notes, "1 parts without texture coordinates"));
   EXPECT_TRUE(mentions(model.notes, "points and lines"));
   EXPECT_TRUE(mentions(model.notes, "normals are computed"));

@@ -14,6 +14,10 @@ std::string indexed(const char* list, std::size_t index) {
   return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
+std::string name_of_material(int material) {
+  return material < 0 ? "no material" : indexed("materials", static_cast<std::size_t>(material));
+}
+
 bool is_ktx2(const Json& image) {
   const std::string uri = string_at(image, "uri");
   return string_at(image, "mimeType") == "image/ktx2" || uri.ends_with(".ktx2") ||
@@ -57,7 +61,7 @@ void MaterialTable::note(const std::string& sentence) {
 }
 
 std::optional<MaterialTable::Texture> MaterialTable::texture_at(const Json& owner, const char* key,
-                                                                const std::string& where) {
+                                                                const std::string& where) const {
   const Json& info = object_at(file_, owner, key);
   if (info.empty()) return std::nullopt;
   const std::string here = where + "." + key;
@@ -144,22 +148,32 @@ void MaterialTable::read_factor(const Json& material, const std::string& where,
   for (int i = 0; i < 3; ++i) factor[i] = static_cast<float>(values[static_cast<std::size_t>(i)]);
 }
 
-std::size_t MaterialTable::make(int material) {
+const Json& MaterialTable::material_json(int material) const {
   static const Json no_material = Json::object();
-  const Json& materials = array_at(file_, file_.json, "materials");
-  const bool given = material >= 0;
-  const auto index = static_cast<std::size_t>(std::max(material, 0));
-  const std::string where = given ? indexed("materials", index) : "no material";
-  const Json& json = given ? materials[index] : no_material;
-  const auto normal = texture_at(json, "normalTexture", where);
-  auto albedo =
+  if (material < 0) return no_material;
+  return array_at(file_, file_.json, "materials")[static_cast<std::size_t>(material)];
+}
+
+MaterialTable::Textures MaterialTable::textures_of(int material) const {
+  const Json& json = material_json(material);
+  const std::string where = name_of_material(material);
+  Textures textures;
+  textures.normal = texture_at(json, "normalTexture", where);
+  textures.albedo =
       texture_at(object_at(file_, json, "pbrMetallicRoughness"), "baseColorTexture", where);
-  if (!albedo) {
+  if (!textures.albedo) {
     const Json& older = object_at(file_, object_at(file_, json, "extensions"),
                                   "KHR_materials_pbrSpecularGlossiness");
-    albedo = texture_at(older, "diffuseTexture", where);
+    textures.albedo = texture_at(older, "diffuseTexture", where);
   }
-  const UvChoice uv = normal ? normal->uv : albedo ? albedo->uv : UvChoice{};
+  return textures;
+}
+
+std::size_t MaterialTable::make(int material) {
+  const Json& json = material_json(material);
+  const Textures textures = textures_of(material);
+  const auto& [normal, albedo] = textures;
+  const UvChoice uv = textures.uv();
   const std::string key = (normal   ? "n:" + identity(normal->image)
                            : albedo ? "a:" + identity(albedo->image)
                                     : "material:" + std::to_string(material)) +
@@ -175,7 +189,7 @@ std::size_t MaterialTable::make(int material) {
   const std::string stem = model_.path.stem().string();
   const std::string name = string_at(json, "name");
   set.name = file_safe_name(name.empty() ? stem : name, model_.texture_sets);
-  read_factor(json, where, set.albedo_factor);
+  read_factor(json, name_of_material(material), set.albedo_factor);
   if (normal) set.normal_map = source_of(*normal);
   const bool same_uv = albedo && key_of(albedo->uv) == key_of(uv);
   if (albedo && same_uv) set.albedo = source_of(*albedo);
@@ -185,7 +199,6 @@ std::size_t MaterialTable::make(int material) {
   }
   model_.texture_sets.push_back(std::move(set));
   keys_.push_back(key);
-  choices_.push_back(uv);
   return keys_.size() - 1;
 }
 

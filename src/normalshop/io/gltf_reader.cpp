@@ -260,8 +260,8 @@ class Reader {
     }
     const auto position_index = attribute(primitive, "POSITION", where);
     if (!position_index) fail(file_, where + " has no POSITION");
-    const std::size_t set = materials_.texture_set(material_of(primitive, where));
-    const UvChoice& uv = materials_.uv_choice(set);
+    const int material = material_of(primitive, where);
+    const UvChoice uv = materials_.uv_choice(material);
     const std::string uv_name = "TEXCOORD_" + std::to_string(uv.set);
     if (!attribute(primitive, uv_name, where)) {
       ++skipped_no_uv_;
@@ -276,7 +276,8 @@ class Reader {
     append(corners_of(primitive, where, vertices, mode), positions,
            values(primitive, "NORMAL", where, 3, vertices),
            values(primitive, "TANGENT", where, 4, vertices),
-           values(primitive, uv_name, where, 2, vertices), uv.transform, set, transform);
+           values(primitive, uv_name, where, 2, vertices), uv.transform,
+           materials_.texture_set(material), transform);
   }
 
   bool has_plain_positions(const Json& primitive, const std::string& where) const {

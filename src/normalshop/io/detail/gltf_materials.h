@@ -29,9 +29,10 @@ struct UvChoice {
 class MaterialTable {
  public:
   MaterialTable(const File& file, Model& model) : file_(file), model_(model) {}
-  /// Texture set of material -1 (none) or above.
+  /// Which UVs the maps of a material have: -1 (none) or above.
+  UvChoice uv_choice(int material) const { return textures_of(material).uv(); }
+  /// Its texture set, made on the first call.
   std::size_t texture_set(int material);
-  const UvChoice& uv_choice(std::size_t texture_set) const { return choices_[texture_set]; }
 
  private:
   struct Texture {
@@ -39,7 +40,15 @@ class MaterialTable {
     UvChoice uv;
     float scale;
   };
-  std::optional<Texture> texture_at(const Json& owner, const char* key, const std::string& where);
+  struct Textures {
+    std::optional<Texture> normal;
+    std::optional<Texture> albedo;
+    UvChoice uv() const { return normal ? normal->uv : albedo ? albedo->uv : UvChoice{}; }
+  };
+  const Json& material_json(int material) const;
+  Textures textures_of(int material) const;
+  std::optional<Texture> texture_at(const Json& owner, const char* key,
+                                    const std::string& where) const;
   std::optional<MapSource> source_of(const Texture& texture);
   std::string identity(std::size_t image) const;
   std::size_t make(int material);
@@ -51,7 +60,6 @@ class MaterialTable {
   std::vector<int> materials_;  ///< parallel to sets_
   std::vector<std::size_t> sets_;
   std::vector<std::string> keys_;  ///< by texture set
-  std::vector<UvChoice> choices_;
 };
 
 }  // namespace normalshop::gltf
