@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <system_error>
 
 #include "normalshop/core/error.h"
@@ -34,6 +35,18 @@ std::string Companions::place(const std::string& reference) const {
   return leads_out(normal) ? normal.filename().string() : normal.generic_string();
 }
 
+/// Files of one name from different folders that lie outside the model's become name_2 and so on.
+std::string Companions::unused(const std::string& wanted) const {
+  const fs::path path(wanted);
+  std::string name = wanted;
+  const auto taken = [&](const auto& done) { return done.second == name; };
+  for (int i = 2; std::any_of(done_.begin(), done_.end(), taken); ++i) {
+    const std::string numbered = path.stem().string() + "_" + std::to_string(i);
+    name = (path.parent_path() / (numbered + path.extension().string())).generic_string();
+  }
+  return name;
+}
+
 bool Companions::reserved(const fs::path& target) const {
   for (const fs::path& other : reserved_) {
     if (other == target.lexically_normal()) return true;
@@ -52,11 +65,12 @@ std::string Companions::write(const std::string& reference, std::string_view byt
 }
 
 std::string Companions::copy(const std::string& reference) {
-  const auto known = done_.find(reference);
-  if (known != done_.end()) return known->second;
-  const std::string name = place(reference);
-  done_[reference] = name;
   const fs::path from = source_folder_ / reference;
+  const std::string key = from.lexically_normal().string();
+  const auto known = done_.find(key);
+  if (known != done_.end()) return known->second;
+  const std::string name = unused(place(reference));
+  done_[key] = name;
   const fs::path target = folder_ / name;
   std::error_code error;
   if (name.empty() || reserved(target) || fs::equivalent(from, target, error)) return name;

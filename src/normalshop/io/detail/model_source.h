@@ -35,7 +35,8 @@ class Companions {
   Companions(const ModelSource& source, const std::filesystem::path& model_path,
              const std::map<std::size_t, NormalMapReference>& normal_maps);
   /// Copies `reference` (a path relative to the source's folder) and returns how the written model
-  /// refers to it: the same, or its bare file name where it leads out of the folder.
+  /// refers to it: the same, or its bare file name (numbered where another file has it) where it
+  /// leads out of the folder.
   std::string copy(const std::string& reference);
   /// Writes bytes instead of copying.
   std::string write(const std::string& reference, std::string_view bytes);
@@ -44,12 +45,13 @@ class Companions {
 
  private:
   std::string place(const std::string& reference) const;
+  std::string unused(const std::string& wanted) const;
   bool reserved(const std::filesystem::path& target) const;
 
   std::filesystem::path source_folder_;
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> reserved_;
-  std::map<std::string, std::string> done_;
+  std::map<std::string, std::string> done_;  ///< by source path
 };
 
 WrittenModel write_gltf(const Model& model, const std::filesystem::path& path,
