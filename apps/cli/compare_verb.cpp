@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdio>
 #include <memory>
 
@@ -24,16 +25,33 @@ struct CompareFlags {
   bool json = false;
 };
 
-Image<Vec3f> read_normals(const std::filesystem::path& path) {
+RawImage read_codes(const std::filesystem::path& path) {
   RawImage codes = read_image(path);
-  if (codes.channels() < 2) {
-    throw InvalidInput("'" + path.string() +
-                       "': a normal map needs 2 to 4 channels; this one has 1");
+  if (codes.channels() >= 2) return codes;
+  throw InvalidInput("'" + path.string() + "': a normal map needs 2 to 4 channels; this one has 1");
+}
+
+/// Two maps of one kind: only how codes stand for numbers is guessed, not the signs, and alike for
+/// codes of one type.
+std::array<NormalConvention, 2> conventions_of(const RawImage& a, const RawImage& b) {
+  std::array<NormalConvention, 2> each{guess_convention(a).convention,
+                                       guess_convention(b).convention};
+  const bool alike = a.type() == b.type() && a.channels() == b.channels();
+  const auto either = [&](bool NormalConvention::*trait) {
+    const bool any = each[0].*trait || each[1].*trait;
+    if (alike) each[0].*trait = each[1].*trait = any;
+  };
+  either(&NormalConvention::two_channel);
+  either(&NormalConvention::centred_code);
+  either(&NormalConvention::signed_float);
+  for (NormalConvention& convention : each) {
+    convention.space = convention.two_channel ? NormalSpace::Tangent : NormalSpace::Object;
+    convention.green_down = false;
   }
-  // Two maps of one kind: only how codes stand for numbers is guessed, not the signs.
-  NormalConvention convention = guess_convention(codes).convention;
-  convention.space = convention.two_channel ? NormalSpace::Tangent : NormalSpace::Object;
-  convention.green_down = false;
+  return each;
+}
+
+Image<Vec3f> normals_of(RawImage codes, const NormalConvention& convention) {
   const NormalMap map(std::move(codes), convention);
   Image<Vec3f> normals(map.width(), map.height());
   for (int y = 0; y < map.height(); ++y) map.read_normals(y, normals.row(y));
@@ -65,8 +83,11 @@ void write_picture(const CompareFlags& flags, MaskView degrees, double scale) {
 }
 
 void run_compare(const CompareFlags& flags) {
-  const Image<Vec3f> a = read_normals(flags.a);
-  const Image<Vec3f> b = read_normals(flags.b);
+  RawImage a_codes = read_codes(flags.a);
+  RawImage b_codes = read_codes(flags.b);
+  const auto conventions = conventions_of(a_codes, b_codes);
+  const Image<Vec3f> a = normals_of(std::move(a_codes), conventions[0]);
+  const Image<Vec3f> b = normals_of(std::move(b_codes), conventions[1]);
   if (a.width() != b.width() || a.height() != b.height()) {
     throw InvalidInput("maps of one size can be compared, but " +
                        size_text(flags.a, a.width(), a.height()) + " and " +
