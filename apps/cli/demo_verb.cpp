@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,6 +8,7 @@
 
 #include "normalshop/chart/render.h"
 #include "normalshop/core/error.h"
+#include "normalshop/core/stopwatch.h"
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/edit_report.h"
 #include "normalshop/io/file_assets.h"
@@ -21,20 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int picture_side = 800;
-
-class Stopwatch {
- public:
-  /// Seconds since the last call.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void create_folder(const fs::path& folder) {
   std::error_code error;

@@ -1,6 +1,5 @@
 #include "normalshop/document/apply_edit.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "normalshop/chart/effective.h"
@@ -8,6 +7,7 @@
 #include "normalshop/chart/resolution.h"
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
+#include "normalshop/core/stopwatch.h"
 #include "normalshop/document/surface_check.h"
 
 namespace normalshop {
@@ -16,19 +16,6 @@ namespace {
 
 /// Depth steps fade an edit out over this part of the model's size.
 constexpr float step_falloff_share = 0.004F;
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 Extent view_extent(const View& view) {
   return {Vec2f(-0.5F * view.width, -0.5F * view.height),

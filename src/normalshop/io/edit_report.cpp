@@ -1,8 +1,8 @@
 #include "normalshop/io/edit_report.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "normalshop/core/stopwatch.h"
 #include "normalshop/io/atomic_file.h"
 
 namespace normalshop {
@@ -21,18 +21,15 @@ class StageClock {
     if (found == times_.end()) times_.emplace_back(stage, 0.0);
   }
   void stop() {
-    const auto now = std::chrono::steady_clock::now();
-    if (current_ < times_.size()) {
-      times_[current_].second += std::chrono::duration<double>(now - last_).count();
-    }
+    const double seconds = watch_.lap();
+    if (current_ < times_.size()) times_[current_].second += seconds;
     current_ = times_.size() + 1;
-    last_ = now;
   }
 
  private:
   std::vector<std::pair<std::string, double>>& times_;
   std::size_t current_ = std::size_t(-1);
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
 };
 
 std::vector<const NormalMap*> maps_of(const Document& document) {
