@@ -23,15 +23,6 @@ function(normalshop_test name)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()
 
-# normalshop_benchmark(NAME SOURCES ... LIBRARIES ...): the Google Benchmark program bench_NAME.
-function(normalshop_benchmark name)
-  cmake_parse_arguments(BENCH "" "" "SOURCES;LIBRARIES" ${ARGN})
-  add_executable(bench_${name} ${BENCH_SOURCES})
-  target_compile_definitions(bench_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_link_libraries(bench_${name} PRIVATE ${BENCH_LIBRARIES} benchmark::benchmark_main
-                                              normalshop::compiler)
-endfunction()
-
 # normalshop_fuzzer(NAME SOURCES ... LIBRARIES ...): the libFuzzer program fuzz_NAME. Its seeds, if
 # any, lie in fuzz/corpus/NAME; `dev check` runs it.
 function(normalshop_fuzzer name)
