@@ -6,8 +6,6 @@
 
 #include "verbs.h"
 
-#include "normalshop/core/error.h"
-
 namespace {
 
 constexpr int failed = 1;
@@ -32,9 +30,7 @@ int complain_about_flags(const CLI::App& app, const CLI::ParseError& error) {
   return complain(verb + ": " + error.what() + "; see normalshop " + verb + " --help", wrong_use);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{
       "Edits the normals of textured meshes: sketches, stamps and filters details in "
       "editing charts and writes them back to the atlas."};
@@ -51,12 +47,20 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return e.get_exit_code() == 0 ? app.exit(e) : complain_about_flags(app, e);
-  } catch (const normalshop::Error& e) {
-    return complain(e.what());
   } catch (const std::bad_alloc&) {
     return complain("not enough memory for this job");
   } catch (const std::exception& e) {
     return complain(e.what());
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (...) {
+    return failed;  // not even the message could be put together
+  }
 }
