@@ -52,8 +52,7 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
 /// huge brush or sigma costs no more than the whole model does; and rather than let the pixels grow
 /// coarser than the texels, an edit reads less far.
 ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, const Extent& model,
-                      const Mesh& mesh, const StorageAtlas& storage) {
-  const float pixel = texel_pixel_size(mesh, storage, view, extent.low, extent.high);
+                      float pixel) {
   const Vec2f spare =
       0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
   const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach());
@@ -140,8 +139,9 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage)
   if (extent.empty()) {
     fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), model);
   }
-  EditingChart chart = build_chart(
-      edit, mesh, storage, choose_grid(edit, view, extent, model, mesh, storage), box.diagonal());
+  const float texel = texel_pixel_size(mesh, storage, view, extent.low, extent.high);
+  EditingChart chart = build_chart(edit, mesh, storage,
+                                   choose_grid(edit, view, extent, model, texel), box.diagonal());
   report.times.pull = watch.lap();
 
   OperatorInput input;
@@ -175,6 +175,7 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage)
   report.chart_width = chart.grid.width();
   report.chart_height = chart.grid.height();
   report.pixel = chart.grid.pixel;
+  report.coarser_than_texels = chart.grid.pixel > 1.01F * texel;
   return report;
 }
 

@@ -22,6 +22,9 @@ struct EditReport {
   int chart_width = 0;
   int chart_height = 0;
   float pixel = 0.0F;  ///< object units
+  /// The edit covers more texels than the largest chart has pixels: the finest take an interpolated
+  /// change.
+  bool coarser_than_texels = false;
   PushResult pushed;
   EditTimes times;
 };

@@ -55,6 +55,11 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   for (const Edit& edit : recipe.edits) {
     job.operators.push_back(edit.operation->name());
     job.edits.push_back(document.apply(edit));
+    if (job.edits.back().coarser_than_texels) {
+      job.notes.push_back(edit.path +
+                          ": covers more texels than an editing chart has pixels, so it "
+                          "comes out softer than the map could show; edit from nearer");
+    }
   }
   clock.start("seams");
   const std::vector<float> after = seam_angles(document.mesh(), samples, maps);
@@ -78,6 +83,7 @@ Value edits_value(const EditJob& job) {
                                 {"largest_change_degrees", e.pushed.largest_change},
                                 {"chart", Value::Array{e.chart_width, e.chart_height}},
                                 {"pixel", e.pixel},
+                                {"coarser_than_texels", e.coarser_than_texels},
                                 {"seconds", Value::Object{{"pull", e.times.pull},
                                                           {"operator", e.times.operate},
                                                           {"push", e.times.push}}}});

@@ -26,8 +26,19 @@ std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType typ
   return opened.model.texture_sets[set].name + extension;
 }
 
+/// The map that an edit starts from stays as it is.
+void check_not_input(const OpenedDocument& opened, const std::filesystem::path& target) {
+  for (const OpenedSet& set : opened.sets) {
+    std::error_code error;
+    if (set.normal_map_path.empty()) continue;
+    if (!std::filesystem::equivalent(set.normal_map_path, target, error)) continue;
+    throw InvalidInput(target.string() +
+                       ": this normal map is an input of the edit; choose another output folder");
+  }
+}
+
 std::vector<std::filesystem::path> write_maps(const OpenedDocument& opened,
-                                              const std::filesystem::path& folder,
+                                              const StagedFolder& staged,
                                               const ExportOptions& options,
                                               std::map<std::size_t, NormalMapReference>& references,
                                               std::vector<std::string>& notes,
@@ -36,11 +47,12 @@ std::vector<std::filesystem::path> write_maps(const OpenedDocument& opened,
   for (std::size_t i = 0; i < opened.sets.size(); ++i) {
     const CodeType type = options.type.value_or(opened.sets[i].type);
     const std::string name = map_name(opened, i, type);
+    check_not_input(opened, staged.folder() / name);
     progress.at(0.0, "encoding maps");
     const RawImage codes = export_map(opened, i, options);
     progress.at(0.5, "writing maps");
-    write_image(folder / name, codes);
-    files.push_back(folder / name);
+    write_image(staged.path() / name, codes);
+    files.push_back(staged.path() / name);
     references[i] = {name, opened.sets[i].scale_applied};
     if (type == CodeType::F32 && opened.model.path.extension() != ".obj") {
       notes.push_back(name + ": glTF viewers read only PNG and JPEG; use --bits 8 or 16 for them");
@@ -77,7 +89,7 @@ std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
   std::vector<std::filesystem::path> files;
   staged.write([&] {
     std::map<std::size_t, NormalMapReference> references;
-    files = write_maps(opened, staged.path(), options, references, notes, progress);
+    files = write_maps(opened, staged, options, references, notes, progress);
     progress.at(0.9, "writing the model");
     const WrittenModel written =
         write_model(opened.model, staged.path() / opened.model.path.filename(), references);

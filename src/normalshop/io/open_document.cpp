@@ -7,6 +7,7 @@
 #include "normalshop/core/options.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/io/image_file.h"
+#include "normalshop/surface/texel_density.h"
 
 namespace normalshop {
 
@@ -111,6 +112,7 @@ NormalMap open_normals(const MapSource& source, const std::string& set_name,
   RawImage codes = read_source(source);
   progress.at(0.3, "guessing conventions");
   info.normal_map = source.name.empty() ? source.path.string() : source.name;
+  info.normal_map_path = source.path;
   info.type = codes.type();
   const std::string extension = source.path.extension().string();
   info.tiff = extension == ".tif" || extension == ".tiff";
@@ -172,6 +174,17 @@ bool is_missing(const MapSource& source) {
   return source.bytes.empty() && !std::filesystem::exists(source.path, error);
 }
 
+/// One edit there shows in several places of the model.
+void note_shared_texels(OpenedDocument& opened) {
+  for (std::size_t i = 0; i < opened.sets.size(); ++i) {
+    const TexelUse use = texel_use(opened.document.storage().sets[i].texels);
+    if (use.shared == 0) continue;
+    opened.notes.push_back(opened.model.texture_sets[i].name + ": " + std::to_string(use.shared) +
+                           " texels are used by several triangles (overlapping or mirrored "
+                           "charts); editing one of these places edits them all");
+  }
+}
+
 }  // namespace
 
 OpenedDocument open_document(const OpenOptions& options, const Progress& progress) {
@@ -205,6 +218,7 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
     opened.sets.push_back(std::move(info));
   }
   opened.document = Document(std::move(mesh), std::move(maps), progress);
+  note_shared_texels(opened);
   return opened;
 }
 

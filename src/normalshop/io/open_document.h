@@ -25,8 +25,9 @@ struct OpenOptions {
 
 /// Where a texture set's normals came from.
 struct OpenedSet {
-  std::string normal_map;        ///< file, or how it is embedded; empty: none, the map is flat
-  CodeType type = CodeType::U8;  ///< of the imported codes
+  std::string normal_map;  ///< file, or how it is embedded; empty: none, the map is flat
+  std::filesystem::path normal_map_path;  ///< empty unless it is a file of its own
+  CodeType type = CodeType::U8;           ///< of the imported codes
   bool tiff = false;
   bool scale_applied = false;  ///< the model's normal scale was multiplied into the map
   int imported_width = 0;
