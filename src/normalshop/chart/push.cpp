@@ -56,7 +56,7 @@ class SetPush {
   std::vector<Write> gutter_writes() const;
   std::vector<Write> shared_writes() const;
   Vec3f texel_weights(std::uint32_t triangle, int x, int y) const;
-  Vec3f usable_vector(int x, int y, const Vec3f& base) const;
+  Vec3f usable_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                       const PushTriangle& source, const Effect& effect) const;
   void add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
@@ -148,11 +148,11 @@ void SetPush::mark_tiles(std::uint32_t triangle) {
 }
 
 /// The texel's vector; codes without a direction count as the base normal.
-Vec3f SetPush::usable_vector(int x, int y, const Vec3f& base) const {
+Vec3f SetPush::usable_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const {
   const Vec3f stored = set_.normals.vector(x, y);
   if (!codes::direction_of(stored).isZero()) return stored;
   if (space_ == NormalSpace::Tangent) return Vec3f::UnitZ();
-  return sampler_.grid().view.to_object(base);
+  return frame.inverse() * base;
 }
 
 /// Adds a texel whose code refers to `frame` at `weights`; `base` is the edited surface's.
@@ -160,7 +160,7 @@ void SetPush::add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& w
                         const Effect& effect, const Vec3f& base, TexelBatch& batch) const {
   const View& view = sampler_.grid().view;
   const Mat3f m = frame.frame(weights, frame.normals * weights, space_, view);
-  batch.add(m, base, usable_vector(x, y, base), effect);
+  batch.add(m, base, usable_vector(x, y, base, m), effect);
 }
 
 Tally SetPush::push_tile(int tile, Cache& triangles, TexelBatch& batch) {
@@ -279,7 +279,7 @@ std::vector<Write> SetPush::gutter_writes() const {
     const PushTriangle& owner = triangles.get(g.owner);
     const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
     const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, view);
-    const Vec3f own = usable_vector(x, y, base);
+    const Vec3f own = usable_vector(x, y, base, frame);
     batch.add(frame, base, gutter_vector(g, frame, own, source, effect), effect);
     apply(sampler_.mode(), batch);
     out.push_back({g.texel, batch.result.get(0)});

@@ -235,8 +235,10 @@ ColorImage render(const Mesh& mesh, const StorageAtlas& storage, const View& vie
   ColorImage picture(options.width, options.height);
   Rasterizer rasterizer;
   EditingChart chart;
-  for (int y = 0; y < options.height; y += band_rows) {
-    draw_band(scene, y, std::min(y + band_rows, options.height), rasterizer, chart, picture);
+  // The weight looks around each pixel, so it needs the picture in one piece.
+  const int rows = options.style == RenderStyle::Weight ? options.height : band_rows;
+  for (int y = 0; y < options.height; y += rows) {
+    draw_band(scene, y, std::min(y + rows, options.height), rasterizer, chart, picture);
   }
   return picture;
 }
