@@ -9,6 +9,7 @@
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/surface_check.h"
+#include "normalshop/surface/seam_fit.h"
 
 namespace normalshop {
 
@@ -124,9 +125,39 @@ EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas&
   return chart;
 }
 
+/// The seams that may lie among the texels that an edit in the region changes.
+std::vector<SeamEdge> seams_near(const Mesh& mesh, std::span<const SeamEdge> seams,
+                                 const ChartGrid& grid, const Rect& region) {
+  constexpr int margin = 32;  // texels beside a seam may be much larger than pixels
+  const Rect reach = grow(region, margin);
+  const auto low = Vec2f(static_cast<float>(reach.x0), static_cast<float>(reach.y0));
+  const auto high = Vec2f(static_cast<float>(reach.x1), static_cast<float>(reach.y1));
+  std::vector<SeamEdge> near;
+  for (const SeamEdge& edge : seams) {
+    const Vec2f a = grid.project(mesh.position(edge.a0)).head<2>();
+    const Vec2f b = grid.project(mesh.position(edge.a1)).head<2>();
+    const bool meets = (a.cwiseMin(b).array() <= high.array()).all() &&
+                       (a.cwiseMax(b).array() >= low.array()).all();
+    if (meets) near.push_back(edge);
+  }
+  return near;
+}
+
+PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams,
+                        const EditingChart& chart, const ChartEdit& result, StorageAtlas& storage) {
+  std::vector<NormalMap*> maps;
+  for (StorageSet& set : storage.sets) maps.push_back(&set.normals);
+  const std::vector<const NormalMap*> before(maps.begin(), maps.end());
+  const SeamFit fit(mesh, seams_near(mesh, seams, chart.grid, result.region), before);
+  const PushResult pushed = push(mesh, chart, result, storage);
+  fit.apply(maps);
+  return pushed;
+}
+
 }  // namespace
 
-EditReport apply_edit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage) {
+EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+                      StorageAtlas& storage) {
   EditReport report;
   Stopwatch watch;
   const View view = resolve(edit.view, mesh);
@@ -170,7 +201,7 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage)
   result.change = change;
   if (edit.details == DetailsRule::Ignore) result.coverage = coverage;
   result.region = region;
-  if (edit.strength > 0.0F) report.pushed = push(mesh, chart, result, storage);
+  if (edit.strength > 0.0F) report.pushed = push_and_fit(mesh, seams, chart, result, storage);
   report.times.push = watch.lap();
   report.chart_width = chart.grid.width();
   report.chart_height = chart.grid.height();

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <span>
+
 #include "normalshop/document/document.h"
 
 namespace normalshop {
 
 /// The one way of an edit: view -> editing chart -> operator -> edited chart -> storage atlas.
-/// Throws before anything changes.
-EditReport apply_edit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage);
+/// `seams` are those of the whole mesh. Throws before anything changes.
+EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+                      StorageAtlas& storage);
 
 }  // namespace normalshop
