@@ -15,8 +15,8 @@ namespace normalshop {
 namespace {
 
 constexpr std::uint32_t fixed = 0xFFFFFFFFU;
-constexpr int rounds = 8;            // Gauss-Newton steps
-constexpr int steps = 60;            // conjugate gradients in each
+constexpr int rounds = 8;           // Gauss-Newton steps
+constexpr int steps = 60;           // conjugate gradients in each
 constexpr double stiffness = 0.01;  // of texels against leaving their normal
 constexpr double largest_step = 0.4;
 /// Places between two samples, so that both sides also agree where nobody measures.
