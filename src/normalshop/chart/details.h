@@ -24,9 +24,15 @@ constexpr auto names_of(EditMode) { return std::array<std::string_view, 2>{"view
 /// at the horizon of that direction.
 inline Vec2f gradient_from_normal(const Vec3f& n, const Vec3f& base, EditMode mode) {
   if (mode == EditMode::View) return slope_from_normal(n);
-  const Vec3f sg = surface_gradient(n, base);
-  const float inverse = 1.0F / std::max(base.z(), min_cosine);
-  return {sg.x() - base.x() * inverse * sg.z(), sg.y() - base.y() * inverse * sg.z()};
+  // In double: on steep bases rounding in float alone would turn the normal by 3e-5 degrees.
+  const Vec3d normal = n.cast<double>();
+  const Vec3d b = base.cast<double>().normalized();
+  const double along = normal.dot(b);
+  const double cosine = std::max(along, static_cast<double>(min_cosine) * normal.norm());
+  if (!(cosine > 0.0)) return {0.0F, 0.0F};
+  const Vec3d sg = (along * b - normal) / cosine;
+  const double rise = sg.z() / std::max(b.z(), static_cast<double>(min_cosine));
+  return {static_cast<float>(sg.x() - b.x() * rise), static_cast<float>(sg.y() - b.y() * rise)};
 }
 
 /// Base: the tangential vector with <sg, b_u> = h_u and <sg, b_v> = h_v subtracted from the base
@@ -34,10 +40,11 @@ inline Vec2f gradient_from_normal(const Vec3f& n, const Vec3f& base, EditMode mo
 /// is small beside the base surface's radius of curvature.
 inline Vec3f normal_from_gradient(const Vec2f& gradient, const Vec3f& base, EditMode mode) {
   if (mode == EditMode::View) return normal_from_slope(gradient);
-  const float along = gradient.x() * base.x() + gradient.y() * base.y();
-  const Vec3f sg(gradient.x() - along * base.x(), gradient.y() - along * base.y(),
-                 -along * base.z());
-  return (base - sg).normalized();
+  const Vec3d b = base.cast<double>().normalized();
+  const Vec2d g = gradient.cast<double>();
+  const double along = g.x() * b.x() + g.y() * b.y();
+  const Vec3d sg(g.x() - along * b.x(), g.y() - along * b.y(), -along * b.z());
+  return (b - sg).normalized().cast<float>();
 }
 
 /// The numbers of the base surface alone: its slopes, or (0, 0).
