@@ -149,7 +149,7 @@ void SetPush::mark_tiles(std::uint32_t triangle) {
 
 /// The texel's vector; codes without a direction count as the base normal.
 Vec3f SetPush::usable_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const {
-  const Vec3f stored = set_.normals.vector(x, y);
+  Vec3f stored = set_.normals.vector(x, y);
   if (!codes::direction_of(stored).isZero()) return stored;
   if (space_ == NormalSpace::Tangent) return Vec3f::UnitZ();
   return frame.inverse() * base;
