@@ -14,7 +14,7 @@ float extent_field(const FieldReader& reader, std::string_view name) {
 }
 
 Vec3f direction_field(const FieldReader& reader) {
-  const Vec3f v = reader.vec3();
+  Vec3f v = reader.vec3();
   if (v.norm() < 1e-6F) reader.fail("a direction [x, y, z] of a length of at least 1e-6");
   return v;
 }

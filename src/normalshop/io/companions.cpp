@@ -55,7 +55,7 @@ bool Companions::reserved(const fs::path& target) const {
 }
 
 std::string Companions::write(const std::string& reference, std::string_view bytes) {
-  const std::string name = place(reference);
+  std::string name = place(reference);
   const fs::path target = folder_ / name;
   std::error_code error;
   fs::create_directories(folder_of(target), error);
@@ -69,7 +69,7 @@ std::string Companions::copy(const std::string& reference) {
   const std::string key = from.lexically_normal().string();
   const auto known = done_.find(key);
   if (known != done_.end()) return known->second;
-  const std::string name = unused(place(reference));
+  std::string name = unused(place(reference));
   done_[key] = name;
   const fs::path target = folder_ / name;
   std::error_code error;

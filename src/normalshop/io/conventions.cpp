@@ -21,6 +21,7 @@ std::vector<int> bands_of(const RawImage& codes) {
   const int all = std::max(1, codes.height() / band_rows);
   const int count = std::min(all, max_bands);
   std::vector<int> bands;
+  bands.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) bands.push_back(i * all / count * band_rows);
   return bands;
 }

@@ -68,7 +68,7 @@ Primitive weld(const Mesh& mesh, std::uint32_t texture_set) {
 
 class Exporter {
  public:
-  Exporter(const Mesh& mesh, std::string binary_name) : mesh_(mesh) {
+  Exporter(const Mesh& mesh, const std::string& binary_name) : mesh_(mesh) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "NormalShop"}};
     json_["scene"] = 0;
     json_["scenes"] = Json::array({{{"nodes", {0}}}});
