@@ -2,24 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <vector>
 
 #include <Eigen/LU>
 
-#include "normalshop/chart/chart_triangle.h"
 #include "normalshop/chart/edit_sampler.h"
-#include "normalshop/chart/texel_batch.h"
+#include "normalshop/chart/push_candidates.h"
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
 
 namespace {
-
-constexpr int tile_size = NormalMap::tile_size;
 
 /// Sums that do not depend on the order of tasks.
 struct Tally {
@@ -40,201 +36,171 @@ struct Write {
   Vec3f normal;
 };
 
+/// The texels of a batch, by lane.
+template <class T>
+using PerLane = std::array<T, TexelBatch::capacity>;
+
 /// The push into one texture set.
 class SetPush {
  public:
-  SetPush(const Mesh& mesh, const EditSampler& sampler, StorageSet& set, std::uint32_t index);
+  SetPush(const Mesh& mesh, const EditSampler& sampler, StorageSet& set, std::uint32_t index)
+      : mesh_(mesh),
+        sampler_(sampler),
+        set_(set),
+        space_(set.normals.convention().space),
+        candidates_(mesh, sampler, index, set.normals.width(), set.normals.height()) {}
   Tally run();
 
  private:
   using Cache = TriangleCache<PushTriangle>;
+  /// What a task keeps from tile to tile.
+  struct Task {
+    Cache triangles;
+    TexelBatch batch;
+    PerLane<int> columns;
+    PerLane<std::uint32_t> owners;
+    PerLane<Vec3f> stored;
+  };
 
-  bool may_change(std::uint32_t triangle) const;
-  void find_candidates();
-  void mark_tiles(std::uint32_t triangle);
-  Tally push_tile(int tile, Cache& triangles, TexelBatch& batch);
+  Tally push_tile(const Rect& tile, Task& task);
+  void find_texels(const Rect& tile, int y, Task& task) const;
+  void add_texels(std::uint32_t owner, int x, int y, int count, Cache& triangles,
+                  TexelBatch& batch) const;
+  void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
+  Tally edit_row(int y, Task& task);
   std::vector<Write> gutter_writes() const;
   std::vector<Write> shared_writes() const;
-  Vec3f texel_weights(std::uint32_t triangle, int x, int y) const;
-  Vec3f usable_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
+  Vec3f own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
-                      const PushTriangle& source, const Effect& effect) const;
-  void add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
-                 const Effect& effect, const Vec3f& base, TexelBatch& batch) const;
-  Vec3f edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights, const Effect& effect,
-               const Vec3f& base) const;
+                      const PushTriangle& source, float strength) const;
+  void edit_gutter(const PerLane<const GutterTexel*>& items, Cache& triangles, TexelBatch& batch,
+                   std::vector<Write>& out) const;
+  void edit_shared(const PerLane<const SharedTexel*>& items, Cache& triangles, TexelBatch& batch,
+                   std::vector<Write>& out) const;
+  void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
+                            TexelBatch& batch) const;
   Tally write(const std::vector<Write>& writes);
 
   const Mesh& mesh_;
   const EditSampler& sampler_;
   StorageSet& set_;
-  std::uint32_t index_;
   NormalSpace space_;
-  int tile_columns_;
-  std::vector<std::uint8_t> candidate_;  // per triangle of the mesh
-  std::vector<std::uint8_t> tile_used_;
+  PushCandidates candidates_;
 };
 
-SetPush::SetPush(const Mesh& mesh, const EditSampler& sampler, StorageSet& set, std::uint32_t index)
-    : mesh_(mesh),
-      sampler_(sampler),
-      set_(set),
-      index_(index),
-      space_(set.normals.convention().space),
-      tile_columns_((set.normals.width() + tile_size - 1) / tile_size),
-      candidate_(mesh.triangle_count(), 0),
-      tile_used_(static_cast<std::size_t>(tile_columns_ *
-                                          ((set.normals.height() + tile_size - 1) / tile_size))) {}
-
-/// May the triangle hold points that the edit changes?
-bool SetPush::may_change(std::uint32_t triangle) const {
-  if (mesh_.texture_sets[triangle] != index_) return false;
-  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-  const Vec3f& toward = sampler_.grid().view.direction;
-  if (mesh_.normals[corner].dot(toward) <= 0.0F && mesh_.normals[corner + 1].dot(toward) <= 0.0F &&
-      mesh_.normals[corner + 2].dot(toward) <= 0.0F) {
-    return false;
+void SetPush::add_texels(std::uint32_t owner, int x, int y, int count, Cache& triangles,
+                         TexelBatch& batch) const {
+  const PushTriangle& triangle = triangles.get(owner);
+  const TexelAffine& affine = set_.texels.affines()[owner];
+  if (!affine.wraps) {
+    add_run(triangle, affine, x, y, count, batch);
+    return;
   }
-  const ChartGrid& grid = sampler_.grid();
-  const Vec3f a = grid.project(mesh_.position(corner));
-  const Vec3f b = grid.project(mesh_.position(corner + 1));
-  const Vec3f c = grid.project(mesh_.position(corner + 2));
-  const Vec3f low = a.cwiseMin(b).cwiseMin(c);
-  const Vec3f high = a.cwiseMax(b).cwiseMax(c);
-  return sampler_.reaches(low.x(), low.y(), high.x(), high.y());
-}
-
-void SetPush::find_candidates() {
-  parallel_for(mesh_.triangle_count(), 8192, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto triangle = static_cast<std::uint32_t>(i);
-      if (!may_change(triangle)) continue;
-      candidate_[i] = 1;
-      mark_tiles(triangle);
-    }
-  });
-}
-
-void SetPush::mark_tiles(std::uint32_t triangle) {
-  const Vec2f size(static_cast<float>(set_.normals.width()),
-                   static_cast<float>(set_.normals.height()));
-  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-  const Vec2f a = mesh_.uvs[corner].cwiseProduct(size);
-  const Vec2f b = mesh_.uvs[corner + 1].cwiseProduct(size);
-  const Vec2f c = mesh_.uvs[corner + 2].cwiseProduct(size);
-  const Vec2f low = a.cwiseMin(b).cwiseMin(c);
-  const Vec2f high = a.cwiseMax(b).cwiseMax(c);
-  const auto wrap = [](int v, int n) { return ((v % n) + n) % n; };
-  // Whole maps further on come the same texels again.
-  const int x0 = floor_to_int(low.x());
-  const int y0 = floor_to_int(low.y());
-  const int x1 = std::min(floor_to_int(high.x()), x0 + set_.normals.width());
-  const int y1 = std::min(floor_to_int(high.y()), y0 + set_.normals.height());
-  const auto next = [](int v, int n, int w) {  // first texel of the next tile, or of the next map
-    return v + std::min(tile_size - w % tile_size, n - w);
-  };
-  for (int y = y0; y <= y1;) {
-    const int wy = wrap(y, set_.normals.height());
-    for (int x = x0; x <= x1;) {
-      const int wx = wrap(x, set_.normals.width());
-      // Several threads may mark one tile; the mark is the same.
-      std::atomic_ref(
-          tile_used_[static_cast<std::size_t>(wy / tile_size * tile_columns_ + wx / tile_size)])
-          .store(1, std::memory_order_relaxed);
-      x = next(x, set_.normals.width(), wx);
-    }
-    y = next(y, set_.normals.height(), wy);
+  for (int i = 0; i < count; ++i) {
+    const SurfacePoint p = set_.texels.surface_point(owner, x + i, y);
+    batch.add_point(triangle, {1.0F, p.b1, p.b2});
   }
 }
 
-/// The texel's vector; codes without a direction count as the base normal.
-Vec3f SetPush::usable_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const {
-  Vec3f stored = set_.normals.vector(x, y);
-  if (!codes::direction_of(stored).isZero()) return stored;
-  if (space_ == NormalSpace::Tangent) return Vec3f::UnitZ();
-  return frame.inverse() * base;
+/// Fills the batch with the texels of a row of the tile that candidates own.
+void SetPush::find_texels(const Rect& tile, int y, Task& task) const {
+  const std::uint32_t* owners = set_.texels.owner().row(y);
+  task.batch.count = 0;
+  for (int x = tile.x0; x < tile.x1;) {
+    const int begin = x;
+    const std::uint32_t owner = owners[begin];
+    while (x < tile.x1 && owners[x] == owner) ++x;
+    if (owner == no_triangle || !candidates_.contains(owner)) continue;
+    auto lane = static_cast<std::size_t>(task.batch.count);
+    for (int i = begin; i < x; ++i, ++lane) {
+      task.columns[lane] = i;
+      task.owners[lane] = owner;
+    }
+    add_texels(owner, begin, y, x - begin, task.triangles, task.batch);
+  }
 }
 
-/// Adds a texel whose code refers to `frame` at `weights`; `base` is the edited surface's.
-void SetPush::add_texel(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
-                        const Effect& effect, const Vec3f& base, TexelBatch& batch) const {
+void SetPush::fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const {
+  if (space_ == NormalSpace::Tangent) {
+    finish_frames(batch);
+    return;
+  }
   const View& view = sampler_.grid().view;
-  const Mat3f m = frame.frame(weights, frame.normals * weights, space_, view);
-  batch.add(m, base, usable_vector(x, y, base, m), effect);
+  for (int i = 0; i < batch.count; ++i) {
+    Mat3f frame;
+    frame << view.right.transpose(), view.up.transpose(), view.direction.transpose();
+    if (space_ == NormalSpace::Object) {
+      frame *= mesh_.node_frame(triangles[static_cast<std::size_t>(i)]);
+    }
+    batch.set_frame(i, frame);
+  }
 }
 
-Tally SetPush::push_tile(int tile, Cache& triangles, TexelBatch& batch) {
+Tally SetPush::edit_row(int y, Task& task) {
+  TexelBatch& batch = task.batch;
   Tally tally;
-  const int x0 = tile % tile_columns_ * tile_size;
-  const int y0 = tile / tile_columns_ * tile_size;
-  const Rect rect = intersect({x0, y0, x0 + tile_size, y0 + tile_size}, set_.texels.owner().rect());
-  const auto announce = [&](int y) {
-    const auto owners = [&](int row) {
-      const bool inside = row >= rect.y0 && row < rect.y1;
-      return inside ? set_.texels.owner().row(row) + rect.x0 : nullptr;
-    };
-    triangles.announce(owners(y + 2), owners(y + 4), rect.width());
-  };
-  for (int y = rect.y0 - 4; y < rect.y0; ++y) announce(y);
-  for (int y = rect.y0; y < rect.y1; ++y) {
-    announce(y);
-    std::array<int, TexelBatch::capacity> columns{};
-    batch.count = 0;
-    for (int x = rect.x0; x < rect.x1; ++x) {
-      const std::uint32_t owner = set_.texels.owner().row(y)[x];
-      if (owner == no_triangle || candidate_[owner] == 0) continue;
-      ++tally.visited;
-      const Vec3f weights = texel_weights(owner, x, y);
-      const PushTriangle& triangle = triangles.get(owner);
-      Vec3f base;
-      const Effect effect = sampler_.at(triangle, weights, base);
-      if (!effect.any()) continue;
-      columns[static_cast<std::size_t>(batch.count)] = x;
-      add_texel(x, y, triangle, weights, effect, base, batch);
-    }
-    apply(sampler_.mode(), batch);
-    for (int i = 0; i < batch.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      set_.normals.set_normal(columns[k], y, batch.result.get(i));
-      tally.largest = std::max(tally.largest, batch.turn[k]);
-    }
-    tally.changed += static_cast<std::size_t>(batch.count);
+  tally.visited = static_cast<std::size_t>(batch.count);
+  if (batch.count == 0 || !sampler_.read(batch)) return tally;
+  fill_frames(task.owners, batch);
+  const int x0 = task.columns[0];
+  const int x1 = task.columns[static_cast<std::size_t>(batch.count - 1)] + 1;
+  set_.normals.read_vectors(x0, x1 - x0, y, task.stored.data());
+  for (int i = 0; i < batch.count; ++i) {
+    const int column = task.columns[static_cast<std::size_t>(i)];
+    batch.stored.set(i, task.stored[static_cast<std::size_t>(column - x0)]);
+  }
+  apply(sampler_.mode(), batch);
+  for (int i = 0; i < batch.count; ++i) {
+    if (!batch.acts(i)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    set_.normals.set_normal(task.columns[k], y, batch.result.get(i));
+    tally.largest = std::max(tally.largest, batch.turn[k]);
+    ++tally.changed;
   }
   return tally;
 }
 
-Vec3f SetPush::texel_weights(std::uint32_t triangle, int x, int y) const {
-  const TexelAffine& affine = set_.texels.affines()[triangle];
-  if (affine.wraps) {
-    const SurfacePoint p = set_.texels.surface_point(triangle, x, y);
-    return {1.0F, p.b1, p.b2};
+Tally SetPush::push_tile(const Rect& tile, Task& task) {
+  const auto announce = [&](int y) {
+    const auto owners = [&](int row) {
+      const bool inside = row >= tile.y0 && row < tile.y1;
+      return inside ? set_.texels.owner().row(row) + tile.x0 : nullptr;
+    };
+    task.triangles.announce(owners(y + 2), owners(y + 4), tile.width());
+  };
+  Tally tally;
+  for (int y = tile.y0 - 4; y < tile.y0; ++y) announce(y);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    announce(y);
+    find_texels(tile, y, task);
+    tally.add(edit_row(y, task));
   }
-  const float dx = static_cast<float>(x) - affine.x0;
-  const float dy = static_cast<float>(y) - affine.y0;
-  return {1.0F, affine.origin_weights.x() + dx * affine.db_dx.x() + dy * affine.db_dy.x(),
-          affine.origin_weights.y() + dx * affine.db_dx.y() + dy * affine.db_dy.y()};
+  return tally;
 }
 
-/// The new normal of a single texel.
-Vec3f SetPush::edited(int x, int y, const ChartTriangle& frame, const Vec3f& weights,
-                      const Effect& effect, const Vec3f& base) const {
-  TexelBatch batch;
-  add_texel(x, y, frame, weights, effect, base, batch);
-  apply(sampler_.mode(), batch);
-  return batch.result.get(0);
-}
-
-/// What body(item, triangles, writes) writes for all items, in their order.
-template <class Item, class Body>
+/// What edit(items, triangles, batch, writes) writes for all wanted items, in their order, given
+/// batches of the points that add(item, triangles, batch) adds.
+template <class Item, class Wanted, class Add, class Edit>
 std::vector<Write> collect(const std::vector<Item>& items, const Mesh& mesh, const ChartGrid& grid,
-                           const Body& body) {
+                           const Wanted& wanted, const Add& add, const Edit& edit) {
   constexpr std::size_t run = 4096;
   std::vector<std::vector<Write>> parts((items.size() + run - 1) / run);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     TriangleCache<PushTriangle> triangles(mesh, grid);
+    TexelBatch batch;
+    PerLane<const Item*> lanes;
     for (std::size_t part = begin; part < end; ++part) {
-      for (std::size_t i = part * run; i < std::min(items.size(), (part + 1) * run); ++i) {
-        body(items[i], triangles, parts[part]);
+      batch.count = 0;
+      const std::size_t last = std::min(items.size(), (part + 1) * run);
+      for (std::size_t i = part * run; i < last; ++i) {
+        if (wanted(items[i])) {
+          lanes[static_cast<std::size_t>(batch.count)] = &items[i];
+          add(items[i], triangles, batch);
+        }
+        if (batch.count == TexelBatch::capacity || (i + 1 == last && batch.count > 0)) {
+          edit(lanes, triangles, batch, parts[part]);
+          batch.count = 0;
+        }
       }
     }
   });
@@ -243,11 +209,19 @@ std::vector<Write> collect(const std::vector<Item>& items, const Mesh& mesh, con
   return all;
 }
 
+/// The texel's vector; codes without a direction count as the base normal.
+Vec3f SetPush::own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const {
+  Vec3f stored = set_.normals.vector(x, y);
+  if (!codes::direction_of(stored).isZero()) return stored;
+  if (space_ == NormalSpace::Tangent) return Vec3f::UnitZ();
+  return frame.inverse() * base;
+}
+
 /// What a gutter texel held before the edit, in its own frame. Where the edit is weak that is its
 /// code; the stronger it is, the more the texel is grown anew from the surface that it stands for:
 /// else a filter would leave there what it takes away on the other side of the seam.
 Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
-                             const PushTriangle& source, const Effect& effect) const {
+                             const PushTriangle& source, float strength) const {
   if (g.source.triangle == g.owner) return own;
   const Vec3f weights(1.0F, g.source.b1, g.source.b2);
   const std::size_t corner = 3 * static_cast<std::size_t>(g.source.triangle);
@@ -258,56 +232,106 @@ Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec
   const Vec3f grown = frame.inverse() * (across * set_.normals.sample(uv));
   if (!grown.allFinite() || grown.isZero()) return own;
   constexpr float strong = 0.05F;  // a slope of three degrees
-  const float share =
-      std::min(1.0F, effect.weight * (effect.change.norm() + effect.coverage) / strong);
+  const float share = std::min(1.0F, strength / strong);
   return (1.0F - share) * own.normalized() + share * grown.normalized();
+}
+
+void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& triangles,
+                          TexelBatch& batch, std::vector<Write>& out) const {
+  if (!sampler_.read(batch)) return;
+  for (int i = 0; i < batch.count; ++i) {
+    if (!batch.acts(i)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    const GutterTexel& g = *items[k];
+    const PushTriangle source = triangles.get(g.source.triangle);
+    const PushTriangle& owner = triangles.get(g.owner);
+    const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
+    const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, sampler_.grid().view);
+    batch.set_frame(i, frame);
+    const int x = static_cast<int>(g.texel) % set_.normals.width();
+    const int y = static_cast<int>(g.texel) / set_.normals.width();
+    const float strength = std::hypot(batch.change_x[k], batch.change_y[k]) + batch.covered[k];
+    const Vec3f own = own_vector(x, y, batch.base.get(i), frame);
+    batch.stored.set(i, gutter_vector(g, frame, own, source, strength));
+  }
+  apply(sampler_.mode(), batch);
+  for (int i = 0; i < batch.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (batch.acts(i)) out.push_back({items[k]->texel, batch.result.get(i)});
+  }
 }
 
 /// A gutter texel takes the change of the surface point across the seam that it stands for, in the
 /// frame of the chart beside it, which decodes it.
 std::vector<Write> SetPush::gutter_writes() const {
-  const View& view = sampler_.grid().view;
-  const auto visit = [&](const GutterTexel& g, Cache& triangles, std::vector<Write>& out) {
-    if (candidate_[g.source.triangle] == 0) return;
-    Vec3f base;
-    const PushTriangle source = triangles.get(g.source.triangle);
-    const Effect effect = sampler_.at(source, {1.0F, g.source.b1, g.source.b2}, base);
-    if (!effect.any()) return;
-    const int x = static_cast<int>(g.texel) % set_.normals.width();
-    const int y = static_cast<int>(g.texel) / set_.normals.width();
-    TexelBatch batch;
-    const PushTriangle& owner = triangles.get(g.owner);
-    const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
-    const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, view);
-    const Vec3f own = usable_vector(x, y, base, frame);
-    batch.add(frame, base, gutter_vector(g, frame, own, source, effect), effect);
-    apply(sampler_.mode(), batch);
-    out.push_back({g.texel, batch.result.get(0)});
-  };
-  return collect(set_.texels.gutter(), mesh_, sampler_.grid(), visit);
+  return collect(
+      set_.texels.gutter(), mesh_, sampler_.grid(),
+      [&](const GutterTexel& g) { return candidates_.contains(g.source.triangle); },
+      [&](const GutterTexel& g, Cache& triangles, TexelBatch& batch) {
+        batch.add_point(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2});
+      },
+      [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<Write>& out) {
+        edit_gutter(items, triangles, batch, out);
+      });
+}
+
+/// Where the owner's edit acts, it decides.
+void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
+                                   TexelBatch& batch) const {
+  TexelBatch owners;
+  PerLane<int> lanes;
+  for (int i = 0; i < batch.count; ++i) {
+    const std::uint32_t texel = items[static_cast<std::size_t>(i)]->texel;
+    const int x = static_cast<int>(texel) % set_.normals.width();
+    const int y = static_cast<int>(texel) / set_.normals.width();
+    const std::uint32_t owner = set_.texels.owner()(x, y);
+    if (!batch.acts(i) || !candidates_.contains(owner)) continue;
+    lanes[static_cast<std::size_t>(owners.count)] = i;
+    const SurfacePoint p = set_.texels.surface_point(owner, x, y);
+    owners.add_point(triangles.get(owner), {1.0F, p.b1, p.b2});
+  }
+  if (owners.count == 0 || !sampler_.read(owners)) return;
+  for (int i = 0; i < owners.count; ++i) {
+    if (!owners.acts(i)) continue;
+    const auto k = static_cast<std::size_t>(lanes[static_cast<std::size_t>(i)]);
+    batch.change_x[k] = batch.change_y[k] = batch.covered[k] = 0.0F;
+  }
+}
+
+void SetPush::edit_shared(const PerLane<const SharedTexel*>& items, Cache& triangles,
+                          TexelBatch& batch, std::vector<Write>& out) const {
+  if (!sampler_.read(batch)) return;
+  drop_lanes_of_owners(items, triangles, batch);
+  PerLane<std::uint32_t> ids{};
+  for (int i = 0; i < batch.count; ++i) {
+    const SharedTexel& s = *items[static_cast<std::size_t>(i)];
+    ids[static_cast<std::size_t>(i)] = s.triangle;
+    batch.stored.set(i, set_.normals.vector(static_cast<int>(s.texel) % set_.normals.width(),
+                                            static_cast<int>(s.texel) / set_.normals.width()));
+  }
+  fill_frames(ids, batch);
+  apply(sampler_.mode(), batch);
+  for (int i = 0; i < batch.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (batch.acts(i)) out.push_back({items[k]->texel, batch.result.get(i)});
+  }
 }
 
 /// Texels that further triangles cover: where the owner's edit does nothing, the first of them that
 /// the edit reaches decides.
 std::vector<Write> SetPush::shared_writes() const {
-  const auto visit = [&](const SharedTexel& s, Cache& triangles, std::vector<Write>& out) {
-    if (candidate_[s.triangle] == 0) return;
-    const int x = static_cast<int>(s.texel) % set_.normals.width();
-    const int y = static_cast<int>(s.texel) / set_.normals.width();
-    const std::uint32_t owner = set_.texels.owner()(x, y);
-    Vec3f base;
-    if (candidate_[owner] != 0) {
-      const SurfacePoint p = set_.texels.surface_point(owner, x, y);
-      if (sampler_.at(triangles.get(owner), {1.0F, p.b1, p.b2}, base).any()) return;
-    }
-    const SurfacePoint point = set_.texels.surface_point(s.triangle, x, y);
-    const Vec3f weights(1.0F, point.b1, point.b2);
-    const PushTriangle& triangle = triangles.get(s.triangle);
-    const Effect effect = sampler_.at(triangle, weights, base);
-    if (!effect.any()) return;
-    out.push_back({s.texel, edited(x, y, triangle, weights, effect, base)});
-  };
-  return collect(set_.texels.shared(), mesh_, sampler_.grid(), visit);
+  return collect(
+      set_.texels.shared(), mesh_, sampler_.grid(),
+      [&](const SharedTexel& s) { return candidates_.contains(s.triangle); },
+      [&](const SharedTexel& s, Cache& triangles, TexelBatch& batch) {
+        const int x = static_cast<int>(s.texel) % set_.normals.width();
+        const int y = static_cast<int>(s.texel) / set_.normals.width();
+        const SurfacePoint p = set_.texels.surface_point(s.triangle, x, y);
+        batch.add_point(triangles.get(s.triangle), {1.0F, p.b1, p.b2});
+      },
+      [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<Write>& out) {
+        edit_shared(items, triangles, batch, out);
+      });
 }
 
 Tally SetPush::write(const std::vector<Write>& writes) {
@@ -323,21 +347,16 @@ Tally SetPush::write(const std::vector<Write>& writes) {
 }
 
 Tally SetPush::run() {
-  find_candidates();
   // Before any texel changes: the gutter reads normals across its seams.
   const std::vector<Write> shared = shared_writes();
   const std::vector<Write> gutter = gutter_writes();
-  std::vector<int> tiles;
-  for (std::size_t i = 0; i < tile_used_.size(); ++i) {
-    if (tile_used_[i] != 0) tiles.push_back(static_cast<int>(i));
-  }
+  const std::vector<Rect> tiles = candidates_.tiles();
   Tally tally;
   std::mutex mutex;
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     Tally local;
-    Cache triangles(mesh_, sampler_.grid());
-    TexelBatch batch;
-    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i], triangles, batch));
+    Task task{{mesh_, sampler_.grid()}, {}, {}, {}, {}};
+    for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i], task));
     const std::lock_guard lock(mutex);
     tally.add(local);
   });

@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 
 #include "normalshop/chart/texel_batch.h"
+#include "normalshop/core/normal_codes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace normalshop {
@@ -12,7 +13,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, 16>;
+using D = hn::CappedTag<float, TexelBatch::padding>;
 using V = hn::Vec<D>;
 
 struct V3 {
@@ -24,6 +25,13 @@ struct V3 {
 HWY_INLINE V3 load(const TexelBatch::Vectors& v, std::size_t i) {
   const D d;
   return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
+}
+
+HWY_INLINE void store(const V3& v, TexelBatch::Vectors& out, std::size_t i) {
+  const D d;
+  hn::Store(v.x, d, &out.x[i]);
+  hn::Store(v.y, d, &out.y[i]);
+  hn::Store(v.z, d, &out.z[i]);
 }
 
 HWY_INLINE V dot(const V3& a, const V3& b) {
@@ -46,6 +54,72 @@ HWY_INLINE V3 cross(const V3& a, const V3& b) {
 
 HWY_INLINE V3 unit(const V3& a) {
   return scaled(a, hn::Div(hn::Set(D(), 1.0F), hn::Sqrt(dot(a, a))));
+}
+
+HWY_INLINE V mix(float origin, float f1, float f2, V b1, V b2) {
+  const D d;
+  return hn::Add(hn::Add(hn::Set(d, origin), hn::Mul(b1, hn::Set(d, f1))),
+                 hn::Mul(b2, hn::Set(d, f2)));
+}
+
+HWY_INLINE V3 mix(const Mat3f& m, V b1, V b2) {
+  return {mix(m(0, 0), m(0, 1), m(0, 2), b1, b2), mix(m(1, 0), m(1, 1), m(1, 2), b1, b2),
+          mix(m(2, 0), m(2, 1), m(2, 2), b1, b2)};
+}
+
+HWY_INLINE void store_u(const V3& v, TexelBatch::Vectors& out, std::size_t i) {
+  const D d;
+  hn::StoreU(v.x, d, &out.x[i]);
+  hn::StoreU(v.y, d, &out.y[i]);
+  hn::StoreU(v.z, d, &out.z[i]);
+}
+
+/// May write beyond the run: runs come one after the other.
+void add_run_lanes(const PushTriangle& t, const TexelAffine& affine, int x, int y, int count,
+                   TexelBatch& batch) {
+  const D d;
+  const V dy = hn::Set(d, static_cast<float>(y) - affine.y0);
+  const V dy1 = hn::Mul(dy, hn::Set(d, affine.db_dy.x()));
+  const V dy2 = hn::Mul(dy, hn::Set(d, affine.db_dy.y()));
+  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+    const auto k = static_cast<std::size_t>(batch.count + i);
+    const V dx = hn::Sub(hn::Iota(d, static_cast<float>(x + i)), hn::Set(d, affine.x0));
+    const V b1 = hn::Add(
+        hn::Add(hn::Set(d, affine.origin_weights.x()), hn::Mul(dx, hn::Set(d, affine.db_dx.x()))),
+        dy1);
+    const V b2 = hn::Add(
+        hn::Add(hn::Set(d, affine.origin_weights.y()), hn::Mul(dx, hn::Set(d, affine.db_dx.y()))),
+        dy2);
+    store_u(mix(t.points, b1, b2), batch.point, k);
+    const V3 base = mix(t.normals, b1, b2);
+    store_u(base, batch.base, k);
+    store_u(base, batch.normal, k);
+    store_u(mix(t.tangents, b1, b2), batch.tangent, k);
+    hn::StoreU(hn::Set(d, t.sign), d, &batch.sign[k]);
+    hn::StoreU(hn::Set(d, t.depth_step.x()), d, &batch.depth_dx[k]);
+    hn::StoreU(hn::Set(d, t.depth_step.y()), d, &batch.depth_dy[k]);
+    hn::StoreU(hn::Set(d, t.tolerance), d, &batch.tolerance[k]);
+  }
+  batch.count += count;
+}
+
+/// True when all frames are regular.
+bool finish_frame_lanes(TexelBatch& batch) {
+  const D d;
+  const V smallest = hn::Set(d, ChartTriangle::smallest_sine * ChartTriangle::smallest_sine);
+  bool all = true;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(batch.count); i += hn::Lanes(d)) {
+    const V3 n = load(batch.normal, i);
+    const V3 t = load(batch.tangent, i);
+    const V3 b = scaled(cross(n, t), hn::Load(d, &batch.sign[i]));
+    store(b, batch.bitangent, i);
+    const V size = hn::Mul(smallest, dot(n, n));
+    const V across = dot(b, b);
+    const auto regular = hn::And(hn::Gt(across, size), hn::Gt(across, hn::Mul(size, dot(t, t))));
+    hn::Store(hn::IfThenElseZero(regular, hn::Set(d, 1.0F)), d, &batch.regular[i]);
+    all = all && hn::AllTrue(d, regular);
+  }
+  return all;
 }
 
 struct Edit2 {
@@ -88,16 +162,29 @@ HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) 
                hn::Add(base.z, hn::Mul(turned, base.z))});
 }
 
+HWY_INLINE V select(hn::Mask<D> mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
+
+/// The detailed normal; the base normal where the code holds no direction.
+HWY_INLINE V3 before_edit(const V3& t, const V3& b, const V3& n, const V3& stored, const V3& base) {
+  const D d;
+  constexpr float shortest = codes::shortest_normal * codes::shortest_normal;
+  const V length = dot(stored, stored);
+  const auto usable = hn::And(hn::Ge(length, hn::Set(d, shortest)), hn::IsFinite(length));
+  const V3 v = unit(sum(sum(scaled(t, stored.x), scaled(b, stored.y)), scaled(n, stored.z)));
+  return {select(usable, v.x, base.x), select(usable, v.y, base.y), select(usable, v.z, base.z)};
+}
+
 void apply_lanes(EditMode mode, TexelBatch& batch, std::size_t i) {
   const D d;
+  const Edit2 edit{hn::Load(d, &batch.change_x[i]), hn::Load(d, &batch.change_y[i]),
+                   hn::Load(d, &batch.covered[i])};
+  const V any = hn::Or(hn::Or(edit.change_x, edit.change_y), edit.covered);
+  if (hn::AllTrue(d, hn::Eq(any, hn::Zero(d)))) return;
   const V3 t = load(batch.tangent, i);
   const V3 b = load(batch.bitangent, i);
   const V3 n = load(batch.normal, i);
-  const V3 stored = load(batch.stored, i);
-  const V3 before = unit(sum(sum(scaled(t, stored.x), scaled(b, stored.y)), scaled(n, stored.z)));
   const V3 base = unit(load(batch.base, i));
-  const Edit2 edit{hn::Load(d, &batch.change_x[i]), hn::Load(d, &batch.change_y[i]),
-                   hn::Load(d, &batch.covered[i])};
+  const V3 before = before_edit(t, b, n, load(batch.stored, i), base);
   const V3 after = mode == EditMode::View ? after_view_edit(before, base, edit)
                                           : after_base_edit(before, base, edit);
   const V3 moved = sum(after, scaled(before, hn::Set(d, -1.0F)));
@@ -106,9 +193,7 @@ void apply_lanes(EditMode mode, TexelBatch& batch, std::size_t i) {
   const V3 row = cross(b, n);
   const V side = hn::CopySign(hn::Set(d, 1.0F), dot(t, row));
   const V3 v = unit({dot(after, row), dot(after, cross(n, t)), dot(after, cross(t, b))});
-  hn::Store(hn::Mul(v.x, side), d, &batch.result.x[i]);
-  hn::Store(hn::Mul(v.y, side), d, &batch.result.y[i]);
-  hn::Store(hn::Mul(v.z, side), d, &batch.result.z[i]);
+  store(scaled(v, side), batch.result, i);
 }
 
 void apply_all(EditMode mode, TexelBatch& batch) {
@@ -125,7 +210,56 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace normalshop {
 
+HWY_EXPORT(add_run_lanes);
+HWY_EXPORT(finish_frame_lanes);
 HWY_EXPORT(apply_all);
+
+void PushTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle) {
+  ChartTriangle::load(mesh, grid, triangle);
+  const Vec3f across = points.col(1).cross(points.col(2));
+  const float facing = std::abs(across.z());
+  const float steep = across.head<2>().norm();
+  constexpr float steepest = 20.0F;
+  // Pixels to depth: the plane's gradient is -across.xy / across.z.
+  const float limit = steepest * grid.pixel;
+  depth_step.setZero();
+  if (facing > 0.0F) {
+    depth_step = -across.head<2>() / across.z();
+    if (!(steep <= limit * facing)) depth_step *= limit * facing / steep;
+  }
+  if (!depth_step.allFinite()) depth_step.setZero();
+  // The surface may bend away by as much as the steeper of plane and base normals is steep.
+  const float least =
+      std::min({normals(2, 0), normals(2, 0) + normals(2, 1), normals(2, 0) + normals(2, 2)});
+  const float bent = std::min(1.0F / std::max(least, 1e-6F), steepest) - 1.0F;
+  tolerance = grid.pixel + std::max(depth_step.norm(), bent * grid.pixel);
+}
+
+void TexelBatch::add_point(const PushTriangle& triangle, const Vec3f& weights) {
+  point.set(count, triangle.points * weights);
+  base.set(count, triangle.normals * weights);
+  normal.set(count, base.get(count));
+  tangent.set(count, triangle.tangents * weights);
+  const auto k = static_cast<std::size_t>(count);
+  sign[k] = triangle.sign;
+  depth_dx[k] = triangle.depth_step.x();
+  depth_dy[k] = triangle.depth_step.y();
+  tolerance[k] = triangle.tolerance;
+  ++count;
+}
+
+void add_run(const PushTriangle& triangle, const TexelAffine& affine, int x, int y, int count,
+             TexelBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(add_run_lanes)(triangle, affine, x, y, count, batch);
+}
+
+void finish_frames(TexelBatch& batch) {
+  if (HWY_DYNAMIC_DISPATCH(finish_frame_lanes)(batch)) return;
+  for (int i = 0; i < batch.count; ++i) {
+    if (batch.regular[static_cast<std::size_t>(i)] != 0.0F) continue;
+    batch.set_frame(i, ChartTriangle::any_frame(batch.normal.get(i)));
+  }
+}
 
 void apply(EditMode mode, TexelBatch& batch) { HWY_DYNAMIC_DISPATCH(apply_all)(mode, batch); }
 

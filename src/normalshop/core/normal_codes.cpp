@@ -76,12 +76,14 @@ Vec3f decode_texel(const RawImage& image, const NormalConvention& convention,
   return v;
 }
 
-void decode_row(const RawImage& image, const NormalConvention& convention, int y, Vec3f* vectors) {
+void decode_row(const RawImage& image, const NormalConvention& convention, int x, int count, int y,
+                Vec3f* vectors) {
   const CodeRange range = code_range(image.type(), convention);
   const int channels = image.channels();
   with_row(image, y, [&](const auto* row) {
-    for (int x = 0; x < image.width(); ++x, row += channels) {
-      vectors[x] = decode(row, convention, range);
+    const auto* code = row + static_cast<std::ptrdiff_t>(x) * channels;
+    for (int i = 0; i < count; ++i, code += channels) {
+      vectors[i] = decode(code, convention, range);
     }
   });
 }

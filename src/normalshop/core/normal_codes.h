@@ -24,8 +24,9 @@ inline Vec3f direction_of(const Vec3f& v) {
 Vec3f decode_texel(const RawImage& image, const NormalConvention& convention,
                    const CodeRange& range, int x, int y);
 
-/// The vectors of row y: image.width() of them.
-void decode_row(const RawImage& image, const NormalConvention& convention, int y, Vec3f* vectors);
+/// The vectors of `count` texels from (x, y) on to the right.
+void decode_row(const RawImage& image, const NormalConvention& convention, int x, int count, int y,
+                Vec3f* vectors);
 
 /// Writes vectors[0] to vectors[count - 1] as the codes of texels x0 on. What codes of this type
 /// can't hold keeps its direction: vectors beyond -1..1 are shortened, two-channel codes take unit

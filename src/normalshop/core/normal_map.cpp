@@ -61,15 +61,14 @@ Vec3f NormalMap::vector(int x, int y) const {
 
 Vec3f NormalMap::normal(int x, int y) const { return codes::direction_of(vector(x, y)); }
 
-void NormalMap::read_vectors(int y, Vec3f* vectors) const {
-  codes::decode_row(codes_, convention_, y, vectors);
-  for (int x = 0; x < width(); x += tile_size) {
+void NormalMap::read_vectors(int x, int count, int y, Vec3f* vectors) const {
+  codes::decode_row(codes_, convention_, x, count, y, vectors);
+  const int end = x + count;
+  while (x < end) {
+    const int next = std::min(end, (x / tile_size + 1) * tile_size);
     const Tile* t = tile(x, y);
-    if (t == nullptr) continue;
-    const std::size_t begin = index_in_tile(x, y);
-    const auto count = static_cast<std::size_t>(std::min(tile_size, width() - x));
-    for (std::size_t i = 0; i < count; ++i) {
-      if (t->edited[begin + i]) vectors[static_cast<std::size_t>(x) + i] = t->normals[begin + i];
+    for (std::size_t i = index_in_tile(x, y); x < next; ++x, ++i, ++vectors) {
+      if (t != nullptr && t->edited[i]) *vectors = t->normals[i];
     }
   }
 }

@@ -67,7 +67,9 @@ class NormalMap {
   Vec3f vector(int x, int y) const;
   /// normal() and vector() of a whole row, width() of them: faster than one by one.
   void read_normals(int y, Vec3f* normals) const;
-  void read_vectors(int y, Vec3f* vectors) const;
+  void read_vectors(int y, Vec3f* vectors) const { read_vectors(0, width(), y, vectors); }
+  /// vector() of `count` texels from (x, y) on to the right.
+  void read_vectors(int x, int count, int y, Vec3f* vectors) const;
   /// Bilinear, not normalised, wrapping around; (0, 0) is the corner of the first texel and
   /// (1, 1) that of the last.
   Vec3f sample(const Vec2f& uv) const;

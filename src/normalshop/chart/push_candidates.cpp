@@ -1,0 +1,97 @@
+#include "normalshop/chart/push_candidates.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "normalshop/core/parallel.h"
+#include "normalshop/core/sample.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr int tile_size = NormalMap::tile_size;
+
+int tiles_along(int texels) { return (texels + tile_size - 1) / tile_size; }
+
+}  // namespace
+
+PushCandidates::PushCandidates(const Mesh& mesh, const EditSampler& sampler,
+                               std::uint32_t texture_set, int width, int height)
+    : mesh_(mesh),
+      texture_set_(texture_set),
+      width_(width),
+      height_(height),
+      tile_columns_(tiles_along(width)),
+      triangles_(mesh.triangle_count(), 0),
+      tiles_(static_cast<std::size_t>(tile_columns_ * tiles_along(height)), 0) {
+  parallel_for(mesh.triangle_count(), 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto triangle = static_cast<std::uint32_t>(i);
+      if (!may_change(sampler, triangle)) continue;
+      triangles_[i] = 1;
+      mark_tiles(triangle);
+    }
+  });
+}
+
+bool PushCandidates::may_change(const EditSampler& sampler, std::uint32_t triangle) const {
+  if (mesh_.texture_sets[triangle] != texture_set_) return false;
+  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
+  const ChartGrid& grid = sampler.grid();
+  const Vec3f& toward = grid.view.direction;
+  if (mesh_.normals[corner].dot(toward) <= 0.0F && mesh_.normals[corner + 1].dot(toward) <= 0.0F &&
+      mesh_.normals[corner + 2].dot(toward) <= 0.0F) {
+    return false;
+  }
+  const Vec3f a = grid.project(mesh_.position(corner));
+  const Vec3f b = grid.project(mesh_.position(corner + 1));
+  const Vec3f c = grid.project(mesh_.position(corner + 2));
+  const Vec3f low = a.cwiseMin(b).cwiseMin(c);
+  const Vec3f high = a.cwiseMax(b).cwiseMax(c);
+  return sampler.reaches(low.x(), low.y(), high.x(), high.y());
+}
+
+void PushCandidates::mark_tiles(std::uint32_t triangle) {
+  const Vec2f size(static_cast<float>(width_), static_cast<float>(height_));
+  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
+  const Vec2f a = mesh_.uvs[corner].cwiseProduct(size);
+  const Vec2f b = mesh_.uvs[corner + 1].cwiseProduct(size);
+  const Vec2f c = mesh_.uvs[corner + 2].cwiseProduct(size);
+  const Vec2f low = a.cwiseMin(b).cwiseMin(c);
+  const Vec2f high = a.cwiseMax(b).cwiseMax(c);
+  const auto wrap = [](int v, int n) { return ((v % n) + n) % n; };
+  // Whole maps further on come the same texels again.
+  const int x0 = floor_to_int(low.x());
+  const int y0 = floor_to_int(low.y());
+  const int x1 = std::min(floor_to_int(high.x()), x0 + width_);
+  const int y1 = std::min(floor_to_int(high.y()), y0 + height_);
+  const auto next = [](int v, int n, int w) {  // first texel of the next tile, or of the next map
+    return v + std::min(tile_size - w % tile_size, n - w);
+  };
+  for (int y = y0; y <= y1;) {
+    const int wy = wrap(y, height_);
+    for (int x = x0; x <= x1;) {
+      const int wx = wrap(x, width_);
+      // Several threads may mark one tile; the mark is the same.
+      std::atomic_ref(
+          tiles_[static_cast<std::size_t>(wy / tile_size * tile_columns_ + wx / tile_size)])
+          .store(1, std::memory_order_relaxed);
+      x = next(x, width_, wx);
+    }
+    y = next(y, height_, wy);
+  }
+}
+
+std::vector<Rect> PushCandidates::tiles() const {
+  std::vector<Rect> out;
+  for (int i = 0; i < static_cast<int>(tiles_.size()); ++i) {
+    if (tiles_[static_cast<std::size_t>(i)] == 0) continue;
+    const int x = i % tile_columns_ * tile_size;
+    const int y = i / tile_columns_ * tile_size;
+    out.push_back({x, y, std::min(x + tile_size, width_), std::min(y + tile_size, height_)});
+  }
+  return out;
+}
+
+}  // namespace normalshop

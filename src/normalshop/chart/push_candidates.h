@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "normalshop/chart/edit_sampler.h"
+#include "normalshop/chart/storage.h"
+
+/// Where a push has to look, private to floor 4.
+namespace normalshop {
+
+/// The triangles of one texture set that may hold points which an edit changes, and the tiles of
+/// NormalMap::tile_size texels that they may lie in.
+class PushCandidates {
+ public:
+  PushCandidates(const Mesh& mesh, const EditSampler& sampler, std::uint32_t texture_set, int width,
+                 int height);
+
+  bool contains(std::uint32_t triangle) const { return triangles_[triangle] != 0; }
+  /// In texels.
+  std::vector<Rect> tiles() const;
+
+ private:
+  bool may_change(const EditSampler& sampler, std::uint32_t triangle) const;
+  void mark_tiles(std::uint32_t triangle);
+
+  const Mesh& mesh_;
+  std::uint32_t texture_set_;
+  int width_;
+  int height_;
+  int tile_columns_;
+  std::vector<std::uint8_t> triangles_;  // per triangle of the mesh
+  std::vector<std::uint8_t> tiles_;
+};
+
+}  // namespace normalshop
