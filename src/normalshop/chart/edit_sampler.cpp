@@ -1,8 +1,8 @@
 #include "normalshop/chart/edit_sampler.h"
 
 #include <algorithm>
-#include <array>
 
+#include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/visible_weight.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
@@ -68,47 +68,7 @@ bool EditSampler::reaches(float x0, float y0, float x1, float y1) const {
   return false;
 }
 
-/// Bicubic. Pixels outside the region count as 0, and the image's border continues within it.
-Vec2f EditSampler::change_at(float x, float y) const {
-  const int x0 = floor_to_int(x);
-  const int y0 = floor_to_int(y);
-  const bool inside =
-      x0 > region_.x0 && y0 > region_.y0 && x0 + 2 < region_.x1 && y0 + 2 < region_.y1;
-  if (!inside) return change_near_border(x, y);
-  const std::array<float, 4> across = cubic_weights(x - static_cast<float>(x0));
-  const std::array<float, 4> down = cubic_weights(y - static_cast<float>(y0));
-  std::array<float, 8> columns{};  // x and y of four pixels: one vector for the compiler
-  for (int j = 0; j < 4; ++j) {
-    const float* p = edit_.change.row(y0 - 1 + j)[x0 - 1].data();
-    const float w = down[static_cast<std::size_t>(j)];
-    for (std::size_t i = 0; i < 8; ++i) columns[i] += w * p[i];
-  }
-  Vec2f sum = Vec2f::Zero();
-  for (std::size_t i = 0; i < 4; ++i) {
-    sum += across[i] * Vec2f(columns[2 * i], columns[2 * i + 1]);
-  }
-  return sum;
-}
-
-Vec2f EditSampler::change_near_border(float x, float y) const {
-  const SlopeView& change = edit_.change;
-  const int x0 = floor_to_int(x);
-  const int y0 = floor_to_int(y);
-  const std::array<float, 4> wx = cubic_weights(x - static_cast<float>(x0));
-  const std::array<float, 4> wy = cubic_weights(y - static_cast<float>(y0));
-  Vec2f sum = Vec2f::Zero();
-  for (int j = 0; j < 4; ++j) {
-    const int yj = std::clamp(y0 - 1 + j, 0, change.height() - 1);
-    for (int i = 0; i < 4; ++i) {
-      const int xi = std::clamp(x0 - 1 + i, 0, change.width() - 1);
-      if (!region_.contains(xi, yj)) continue;
-      sum += wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)] * change(xi, yj);
-    }
-  }
-  return sum;
-}
-
-/// Bilinear, otherwise like change_at().
+/// Bilinear, otherwise like read_change().
 float EditSampler::coverage_at(float x, float y) const {
   const MaskView& coverage = edit_.coverage;
   const int x0 = floor_to_int(x);
@@ -129,17 +89,14 @@ float EditSampler::coverage_at(float x, float y) const {
 
 bool EditSampler::read(TexelBatch& batch) const {
   if (!read_visible_weight(chart_, blocks_, batch)) return false;
+  read_change(edit_.change, region_, batch);
+  batch.covered.fill(0.0F);
   bool any = false;
   for (int i = 0; i < batch.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const float weight = batch.weight[k];
-    const bool seen = weight > 0.0F;
-    const float x = batch.point.x[k];
-    const float y = batch.point.y[k];
-    const Vec2f change = seen ? Vec2f(weight * change_at(x, y)) : Vec2f(0.0F, 0.0F);
-    batch.change_x[k] = change.x();
-    batch.change_y[k] = change.y();
-    batch.covered[k] = seen && !edit_.coverage.empty() ? weight * coverage_at(x, y) : 0.0F;
+    if (batch.weight[k] > 0.0F && !edit_.coverage.empty()) {
+      batch.covered[k] = batch.weight[k] * coverage_at(batch.point.x[k], batch.point.y[k]);
+    }
     any = any || batch.acts(i);
   }
   return any;

@@ -21,8 +21,6 @@ class EditSampler {
 
  private:
   bool acts(int x, int y) const;
-  Vec2f change_at(float x, float y) const;
-  Vec2f change_near_border(float x, float y) const;
   float coverage_at(float x, float y) const;
 
   const EditingChart& chart_;

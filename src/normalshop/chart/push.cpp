@@ -36,6 +36,8 @@ struct Write {
   Vec3f normal;
 };
 
+constexpr int tile_size = NormalMap::tile_size;
+
 /// The texels of a batch, by lane.
 template <class T>
 using PerLane = std::array<T, TexelBatch::capacity>;
@@ -53,9 +55,16 @@ class SetPush {
 
  private:
   using Cache = TriangleCache<PushTriangle>;
+  /// Texels side by side that one candidate owns.
+  struct Run {
+    int x;
+    int count;
+    std::uint32_t owner;
+  };
   /// What a task keeps from tile to tile.
   struct Task {
     Cache triangles;
+    std::array<std::vector<Run>, tile_size> runs;  // by row of the tile
     TexelBatch batch;
     PerLane<int> columns;
     PerLane<std::uint32_t> owners;
@@ -63,7 +72,8 @@ class SetPush {
   };
 
   Tally push_tile(const Rect& tile, Task& task);
-  void find_texels(const Rect& tile, int y, Task& task) const;
+  void find_runs(const Rect& tile, int y, std::vector<Run>& runs) const;
+  void find_texels(const std::vector<Run>& runs, int y, Task& task) const;
   void add_texels(std::uint32_t owner, int x, int y, int count, Cache& triangles,
                   TexelBatch& batch) const;
   void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
@@ -102,21 +112,28 @@ void SetPush::add_texels(std::uint32_t owner, int x, int y, int count, Cache& tr
   }
 }
 
-/// Fills the batch with the texels of a row of the tile that candidates own.
-void SetPush::find_texels(const Rect& tile, int y, Task& task) const {
+void SetPush::find_runs(const Rect& tile, int y, std::vector<Run>& runs) const {
   const std::uint32_t* owners = set_.texels.owner().row(y);
-  task.batch.count = 0;
+  runs.clear();
   for (int x = tile.x0; x < tile.x1;) {
     const int begin = x;
     const std::uint32_t owner = owners[begin];
     while (x < tile.x1 && owners[x] == owner) ++x;
     if (owner == no_triangle || !candidates_.contains(owner)) continue;
-    auto lane = static_cast<std::size_t>(task.batch.count);
-    for (int i = begin; i < x; ++i, ++lane) {
-      task.columns[lane] = i;
-      task.owners[lane] = owner;
+    runs.push_back({begin, x - begin, owner});
+  }
+}
+
+/// Fills the batch with a row's texels.
+void SetPush::find_texels(const std::vector<Run>& runs, int y, Task& task) const {
+  task.batch.count = 0;
+  for (const Run& run : runs) {
+    const auto lane = static_cast<std::size_t>(task.batch.count);
+    for (int i = 0; i < run.count; ++i) {
+      task.columns[lane + static_cast<std::size_t>(i)] = run.x + i;
+      task.owners[lane + static_cast<std::size_t>(i)] = run.owner;
     }
-    add_texels(owner, begin, y, x - begin, task.triangles, task.batch);
+    add_texels(run.owner, run.x, y, run.count, task.triangles, task.batch);
   }
 }
 
@@ -161,19 +178,24 @@ Tally SetPush::edit_row(int y, Task& task) {
 }
 
 Tally SetPush::push_tile(const Rect& tile, Task& task) {
-  const auto announce = [&](int y) {
-    const auto owners = [&](int row) {
-      const bool inside = row >= tile.y0 && row < tile.y1;
-      return inside ? set_.texels.owner().row(row) + tile.x0 : nullptr;
-    };
-    task.triangles.announce(owners(y + 2), owners(y + 4), tile.width());
+  // Rows are looked through 4 ahead, and their triangles fetched in two steps.
+  const auto look_ahead = [&](int row) {
+    if (row + 4 < tile.height()) {
+      std::vector<Run>& runs = task.runs[static_cast<std::size_t>(row + 4)];
+      find_runs(tile, tile.y0 + row + 4, runs);
+      for (const Run& run : runs) task.triangles.announce_attributes(run.owner);
+    }
+    if (row + 2 < 0 || row + 2 >= tile.height()) return;
+    for (const Run& run : task.runs[static_cast<std::size_t>(row + 2)]) {
+      task.triangles.announce_positions(run.owner);
+    }
   };
   Tally tally;
-  for (int y = tile.y0 - 4; y < tile.y0; ++y) announce(y);
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    announce(y);
-    find_texels(tile, y, task);
-    tally.add(edit_row(y, task));
+  for (int row = -4; row < 0; ++row) look_ahead(row);
+  for (int row = 0; row < tile.height(); ++row) {
+    look_ahead(row);
+    find_texels(task.runs[static_cast<std::size_t>(row)], tile.y0 + row, task);
+    tally.add(edit_row(tile.y0 + row, task));
   }
   return tally;
 }
@@ -355,7 +377,7 @@ Tally SetPush::run() {
   std::mutex mutex;
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     Tally local;
-    Task task{{mesh_, sampler_.grid()}, {}, {}, {}, {}};
+    Task task{{mesh_, sampler_.grid()}, {}, {}, {}, {}, {}};
     for (std::size_t i = begin; i < end; ++i) local.add(push_tile(tiles[i], task));
     const std::lock_guard lock(mutex);
     tally.add(local);

@@ -172,13 +172,6 @@ std::size_t NormalMap::edited_count() const {
   return count;
 }
 
-void NormalMap::set_normal(int x, int y, const Vec3f& n) {
-  auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
-  if (!t) t = std::make_unique<Tile>();
-  t->normals[index_in_tile(x, y)] = n;
-  t->edited.set(index_in_tile(x, y));
-}
-
 void NormalMap::encode_edits(int y, RawImage& out) const {
   for (int x = 0; x < width(); x += tile_size) {
     const Tile* t = tile(x, y);

@@ -83,7 +83,12 @@ class NormalMap {
   /// Texels that set_normal() has reached.
   std::size_t edited_count() const;
   /// Different tiles may be written by different threads at once. n is unit.
-  void set_normal(int x, int y, const Vec3f& n);
+  void set_normal(int x, int y, const Vec3f& n) {
+    auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
+    if (!t) t = std::make_unique<Tile>();
+    t->normals[index_in_tile(x, y)] = n;
+    t->edited[index_in_tile(x, y)] = true;
+  }
 
   /// Codes of the edited map. With the map's own type and convention every unedited texel keeps its
   /// code, and channels beyond the normal's (alpha) keep theirs always. The space is not converted.
