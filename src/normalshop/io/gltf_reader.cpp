@@ -145,7 +145,7 @@ class Reader {
     std::vector<bool> seen(nodes_.size(), false);
     std::vector<Placed> stack;
     const auto push = [&](const std::vector<std::size_t>& list, const Matrix& parent) {
-      for (auto it = list.rbegin(); it != list.rend(); ++it) stack.push_back({*it, parent});
+      for (std::size_t i = list.size(); i > 0; --i) stack.push_back({list[i - 1], parent});
     };
     push(roots(), Matrix::Identity());
     while (!stack.empty()) {

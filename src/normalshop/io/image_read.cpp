@@ -56,11 +56,19 @@ std::string reason(const std::string& error) {
   return line.empty() ? std::string() : " (" + line + ")";
 }
 
-CodeType code_type_of(OIIO::TypeDesc type, std::string_view name) {
-  if (type == OIIO::TypeDesc::UINT8) return CodeType::U8;
-  if (type == OIIO::TypeDesc::UINT16) return CodeType::U16;
-  if (type == OIIO::TypeDesc::HALF || type == OIIO::TypeDesc::FLOAT) return CodeType::F32;
-  if (type == OIIO::TypeDesc::DOUBLE) return CodeType::F32;
+CodeType code_type_of(const OIIO::TypeDesc& type, std::string_view name) {
+  switch (type.basetype) {
+    case OIIO::TypeDesc::UINT8:
+      return CodeType::U8;
+    case OIIO::TypeDesc::UINT16:
+      return CodeType::U16;
+    case OIIO::TypeDesc::HALF:
+    case OIIO::TypeDesc::FLOAT:
+    case OIIO::TypeDesc::DOUBLE:
+      return CodeType::F32;
+    default:
+      break;
+  }
   throw InvalidInput("the image " + quoted(name) + " holds codes of type " + type.c_str() +
                      "; accepted are 8 and 16 bits without sign, and floats");
 }

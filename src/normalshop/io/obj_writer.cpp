@@ -122,7 +122,11 @@ class ObjWriter {
     if (!out.empty() && out.back() != '\n') out += '\n';
     for (const auto& [name, file] : normal_of_) {
       if (written.contains(name)) continue;
-      out += "newmtl " + name + "\nKd 0.8 0.8 0.8\nnorm " + file + "\n";
+      out += "newmtl ";
+      out += name;
+      out += "\nKd 0.8 0.8 0.8\nnorm ";
+      out += file;
+      out += '\n';
     }
     return out;
   }

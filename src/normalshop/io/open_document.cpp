@@ -16,12 +16,21 @@ namespace {
 constexpr int default_size = 2048;
 constexpr int largest_size = 16384;
 
+[[noreturn]] void fail_without_set(const std::string& flag, const std::string& argument,
+                                   const std::vector<TextureSet>& sets) {
+  std::string names;
+  for (const TextureSet& set : sets) {
+    if (!names.empty()) names += ", ";
+    names += set.name;
+  }
+  throw InvalidInput(flag + " " + argument + ": the model has " + std::to_string(sets.size()) +
+                     " texture sets; write SET=FILE with one of: " + names);
+}
+
 /// Splits "SET=FILE" and finds the set; a plain FILE needs a model with one set.
 std::vector<std::optional<MapSource>> given_maps(const std::vector<std::string>& arguments,
                                                  const Model& model, const char* flag) {
   std::vector<std::optional<MapSource>> out(model.texture_sets.size());
-  std::string names;
-  for (const TextureSet& set : model.texture_sets) names += (names.empty() ? "" : ", ") + set.name;
   for (const std::string& argument : arguments) {
     std::size_t index = 0;
     std::string file = argument;
@@ -34,9 +43,7 @@ std::vector<std::optional<MapSource>> given_maps(const std::vector<std::string>&
       index = static_cast<std::size_t>(found - model.texture_sets.begin());
       file = argument.substr(equals + 1);
     } else if (model.texture_sets.size() != 1) {
-      throw InvalidInput(std::string(flag) + " " + argument + ": the model has " +
-                         std::to_string(model.texture_sets.size()) +
-                         " texture sets; write SET=FILE with one of: " + names);
+      fail_without_set(flag, argument, model.texture_sets);
     }
     if (out[index]) {
       throw InvalidInput(std::string(flag) + ": given twice for the texture set " +

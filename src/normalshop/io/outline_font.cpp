@@ -63,11 +63,11 @@ std::optional<fs::path> find_in(const fs::path& folder, const std::string& name)
 }
 
 fs::path font_file(const fs::path& font) {
-  const fs::path wanted = font.empty() ? fs::path(default_font) : font;
+  fs::path wanted = font.empty() ? fs::path(default_font) : font;
   std::error_code error;
   if (fs::is_regular_file(wanted, error)) return wanted;
   if (!wanted.has_parent_path() && !wanted.has_extension()) {
-    const fs::path usual = "/usr/share/fonts/truetype/dejavu/" + wanted.string() + ".ttf";
+    fs::path usual = "/usr/share/fonts/truetype/dejavu/" + wanted.string() + ".ttf";
     if (fs::is_regular_file(usual, error)) return usual;
     for (const char* folder : {"/usr/share/fonts", "/usr/local/share/fonts"}) {
       if (const auto found = find_in(folder, wanted.string())) return *found;

@@ -168,7 +168,7 @@ int reach(const PenOptions& options) {
 
 Stroke smooth_stroke(const Stroke& stroke, float spacing, StrokeEnds ends) {
   if (!(spacing > 0.0F)) throw InvalidInput("smooth_stroke: spacing must be greater than 0");
-  const Stroke p = without_repeats(stroke, ends);
+  Stroke p = without_repeats(stroke, ends);
   const bool closed = ends == StrokeEnds::Closed && p.size() > 2;
   if (p.size() < 2) return p;
   const auto count = static_cast<std::ptrdiff_t>(p.size());

@@ -115,7 +115,7 @@ void shade(ImageView<Vec3f> normals, ColorView albedo, MaskView occlusion, MaskV
   std::vector<Prepared> lights;
   for (const Light& light : options.lights) lights.push_back(prepare(light, surface));
   for_each_pixel(target.rect(), [&](int x, int y) {
-    const Vec3f n = normals(x, y);
+    const Vec3f& n = normals(x, y);
     if (n.isZero(0.0F)) return;
     const Vec3f color = albedo.empty() ? Vec3f::Constant(0.5F) : albedo(x, y);
     const float open = occlusion.empty() ? 1.0F : occlusion(x, y);
@@ -127,7 +127,7 @@ void shade(ImageView<Vec3f> normals, ColorView albedo, MaskView occlusion, MaskV
 void normal_colors(ImageView<Vec3f> normals, ColorSpan target) {
   assert(normals.rect() == target.rect());
   for_each_pixel(target.rect(), [&](int x, int y) {
-    const Vec3f n = normals(x, y);
+    const Vec3f& n = normals(x, y);
     if (!n.isZero(0.0F)) target(x, y) = 0.5F * (n + Vec3f::Ones());
   });
 }

@@ -139,8 +139,8 @@ Pixel<T> sample(const Patch& patch, ImageView<T> values, const Mapping& m, float
 
 }  // namespace
 
-Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch, Vec2f center,
-           const StampOptions& options) {
+Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
+           const Vec2f& center, const StampOptions& options) {
   const Mapping m = make_mapping(patch, center, options);
   region = intersect(region, details.rect());
   if (region.empty()) return {};
@@ -159,7 +159,7 @@ Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch
   return intersect(region, m.bounds);
 }
 
-Rect stamp_color(ColorSpan color, Rect region, const Patch& patch, Vec2f center,
+Rect stamp_color(ColorSpan color, Rect region, const Patch& patch, const Vec2f& center,
                  const StampOptions& options) {
   const Mapping m = make_mapping(patch, center, options);
   if (patch.color.empty()) throw InvalidInput("stamp: the patch has no colour");

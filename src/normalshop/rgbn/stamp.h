@@ -55,11 +55,11 @@ struct StampOptions : Placement {
 ///
 /// Returns the rectangle outside of which both are 0. Throws InvalidInput for an empty patch,
 /// images of different sizes, and what placement_matrix() rejects.
-Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch, Vec2f center,
-           const StampOptions& options = {});
+Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
+           const Vec2f& center, const StampOptions& options = {});
 
 /// The patch's colour laid over `color` (linear) with the same placement, by opacity.
-Rect stamp_color(ColorSpan color, Rect region, const Patch& patch, Vec2f center,
+Rect stamp_color(ColorSpan color, Rect region, const Patch& patch, const Vec2f& center,
                  const StampOptions& options = {});
 
 /// Pixels around the centre that stamp() may change.
