@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <cstdio>
-#include <memory>
+#include <filesystem>
+#include <string>
+#include <utility>
 
 #include "verbs.h"
 
@@ -125,18 +128,17 @@ void run_compare(const CompareFlags& flags) {
 
 }  // namespace
 
-void add_compare_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("compare", "Measures the angles between two normal maps");
-  const auto flags = std::make_shared<CompareFlags>();
-  verb->add_option("a", flags->a, "Normal map")->required();
-  verb->add_option("b", flags->b, "Normal map of the same size and conventions")->required();
-  verb->add_option("--mask", flags->mask, "Image: only pixels whose first channel is not 0 count");
-  verb->add_option("-o,--output", flags->picture, "PNG picture of the angles in false colours");
-  verb->add_option("--max", flags->largest,
-                   "Angle in degrees of the brightest colour (the largest unless given)")
-      ->check(CLI::PositiveNumber);
-  verb->add_flag("--json", flags->json, "Print the result as JSON");
-  verb->callback([flags] { run_compare(*flags); });
+void add_compare_verb(CommandLine& program) {
+  Verb verb = program.verb("compare", "Measures the angles between two normal maps");
+  CompareFlags& flags = verb.runs(run_compare);
+  verb.takes("a", flags.a, "Normal map").required();
+  verb.takes("b", flags.b, "Normal map of the same size and conventions").required();
+  verb.takes("--mask", flags.mask, "Image: only pixels whose first channel is not 0 count");
+  verb.takes("-o,--output", flags.picture, "PNG picture of the angles in false colours");
+  verb.takes("--max", flags.largest,
+             "Angle in degrees of the brightest colour (the largest unless given)")
+      .positive();
+  verb.flag("--json", flags.json, "Print the result as JSON");
 }
 
 }  // namespace normalshop::cli

@@ -1,6 +1,6 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
 #include "demo_model.h"
 #include "demo_recipe.h"
@@ -21,6 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int picture_side = 800;
+
+struct DemoFlags {
+  fs::path folder = "demo";
+  int size = 2048;
+};
 
 void create_folder(const fs::path& folder) {
   std::error_code error;
@@ -53,11 +58,12 @@ ColorImage side_by_side(const ColorImage& left, const ColorImage& right) {
 }
 
 /// The ordinary road from here on: what is opened and edited is a user's file like any other.
-void run_demo(const fs::path& folder, int size) {
+void run_demo(const DemoFlags& flags) {
+  const fs::path& folder = flags.folder;
   Stopwatch watch;
   create_folder(folder);
   demo::DemoModelOptions options;
-  options.map_size = size;
+  options.map_size = flags.size;
   const fs::path model = demo::write_demo_model(demo::make_demo_model(options), folder);
   std::printf("made the model %s in %.1f s\n", model.string().c_str(), watch.lap());
 
@@ -82,19 +88,14 @@ void run_demo(const fs::path& folder, int size) {
 
 }  // namespace
 
-void add_demo_verb(CLI::App& app) {
-  struct Flags {
-    fs::path folder = "demo";
-    int size = 2048;
-  };
-  CLI::App* verb =
-      app.add_subcommand("demo", "Makes a detailed model, edits it, and draws it before and after");
-  const auto flags = std::make_shared<Flags>();
-  verb->add_option("-o,--output", flags->folder, "Folder for everything")->required();
-  verb->add_option("--size", flags->size, "Texels along a side of the model's maps")
-      ->check(CLI::Range(256, 8192))
-      ->capture_default_str();
-  verb->callback([flags] { run_demo(flags->folder, flags->size); });
+void add_demo_verb(CommandLine& program) {
+  Verb verb =
+      program.verb("demo", "Makes a detailed model, edits it, and draws it before and after");
+  DemoFlags& flags = verb.runs(run_demo);
+  verb.takes("-o,--output", flags.folder, "Folder for everything").required();
+  verb.takes("--size", flags.size, "Texels along a side of the model's maps")
+      .between(256, 8192)
+      .shows_default();
 }
 
 }  // namespace normalshop::cli

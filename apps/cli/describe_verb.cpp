@@ -1,5 +1,5 @@
 #include <cstdio>
-#include <memory>
+#include <string>
 
 #include "verbs.h"
 
@@ -8,6 +8,10 @@
 namespace normalshop::cli {
 
 namespace {
+
+struct DescribeFlags {
+  bool json = false;
+};
 
 void print_text() {
   const Value described = describe_operators();
@@ -27,19 +31,20 @@ void print_text() {
   }
 }
 
+void run_describe(const DescribeFlags& flags) {
+  if (flags.json) {
+    std::fputs(to_json(describe_operators()).c_str(), stdout);
+  } else {
+    print_text();
+  }
+}
+
 }  // namespace
 
-void add_describe_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("describe", "Lists the operators and their options");
-  const auto json = std::make_shared<bool>(false);
-  verb->add_flag("--json", *json, "As JSON");
-  verb->callback([json] {
-    if (*json) {
-      std::fputs(to_json(describe_operators()).c_str(), stdout);
-    } else {
-      print_text();
-    }
-  });
+void add_describe_verb(CommandLine& program) {
+  Verb verb = program.verb("describe", "Lists the operators and their options");
+  DescribeFlags& flags = verb.runs(run_describe);
+  verb.flag("--json", flags.json, "As JSON");
 }
 
 }  // namespace normalshop::cli

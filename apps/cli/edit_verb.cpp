@@ -1,5 +1,6 @@
 #include <cstdio>
-#include <memory>
+#include <filesystem>
+#include <string>
 
 #include "model_flags.h"
 #include "verbs.h"
@@ -59,21 +60,17 @@ void run_edit(const EditFlags& flags) {
 
 }  // namespace
 
-void add_edit_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("edit", "Applies a recipe of edits to a model's normal maps");
-  const auto flags = std::make_shared<EditFlags>();
-  flags->model.add(*verb);
-  verb->add_option("--recipe", flags->recipe, "JSON file of edits (docs/recipes.md)")->required();
-  verb->add_option("-o,--output", flags->output, "Folder for maps, model and report.json")
-      ->required();
-  verb->add_option("--preset", flags->preset,
-                   "Conventions of the written maps (the input's unless given)")
-      ->check(CLI::IsMember({"gltf", "opengl", "directx", "object"}));
-  verb->add_option("--bits", flags->bits,
-                   "Bits a channel of the written maps (the input's unless given)")
-      ->check(CLI::IsMember({"8", "16", "32"}));
-  verb->add_flag("--json", flags->json, "Print the report as JSON");
-  verb->callback([flags] { run_edit(*flags); });
+void add_edit_verb(CommandLine& program) {
+  Verb verb = program.verb("edit", "Applies a recipe of edits to a model's normal maps");
+  EditFlags& flags = verb.runs(run_edit);
+  flags.model.add(verb);
+  verb.takes("--recipe", flags.recipe, "JSON file of edits (docs/recipes.md)").required();
+  verb.takes("-o,--output", flags.output, "Folder for maps, model and report.json").required();
+  verb.takes("--preset", flags.preset, "Conventions of the written maps (the input's unless given)")
+      .one_of({"gltf", "opengl", "directx", "object"});
+  verb.takes("--bits", flags.bits, "Bits a channel of the written maps (the input's unless given)")
+      .one_of({"8", "16", "32"});
+  verb.flag("--json", flags.json, "Print the report as JSON");
 }
 
 }  // namespace normalshop::cli

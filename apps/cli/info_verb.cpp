@@ -1,5 +1,5 @@
 #include <cstdio>
-#include <memory>
+#include <filesystem>
 
 #include "verbs.h"
 
@@ -9,6 +9,12 @@
 namespace normalshop::cli {
 
 namespace {
+
+struct InfoFlags {
+  std::filesystem::path file;
+  bool flip_v = false;
+  bool json = false;
+};
 
 /// "name: value" lines, nested objects indented.
 void print_value(const Value& value, int depth) {
@@ -31,28 +37,23 @@ void print_value(const Value& value, int depth) {
   }
 }
 
+void run_info(const InfoFlags& flags) {
+  const Value info = file_info(flags.file, flags.flip_v);
+  if (flags.json) {
+    std::fputs(to_json(info).c_str(), stdout);
+  } else {
+    print_value(info, 0);
+  }
+}
+
 }  // namespace
 
-void add_info_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("info", "Says what a model or a map is");
-  struct Flags {
-    std::filesystem::path file;
-    bool flip_v = false;
-    bool json = false;
-  };
-  const auto flags = std::make_shared<Flags>();
-  verb->add_option("file", flags->file, "Model (glTF, GLB, OBJ) or image")->required();
-  verb->add_flag("--flip-v", flags->flip_v,
-                 "The model's V runs the other way than its format says");
-  verb->add_flag("--json", flags->json, "Print as JSON");
-  verb->callback([flags] {
-    const Value info = file_info(flags->file, flags->flip_v);
-    if (flags->json) {
-      std::fputs(to_json(info).c_str(), stdout);
-    } else {
-      print_value(info, 0);
-    }
-  });
+void add_info_verb(CommandLine& program) {
+  Verb verb = program.verb("info", "Says what a model or a map is");
+  InfoFlags& flags = verb.runs(run_info);
+  verb.takes("file", flags.file, "Model (glTF, GLB, OBJ) or image").required();
+  verb.flag("--flip-v", flags.flip_v, "The model's V runs the other way than its format says");
+  verb.flag("--json", flags.json, "Print as JSON");
 }
 
 }  // namespace normalshop::cli

@@ -3,24 +3,21 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace normalshop::cli {
 
-void ModelFlags::add(CLI::App& verb) {
-  verb.add_option("model", options_.model, "glTF, GLB or OBJ file")->required();
-  verb.add_option("--normal-map", options_.normal_maps,
-                  "Normal map instead of the model's own: FILE, or SET=FILE with several sets")
-      ->allow_extra_args(false);
-  verb.add_option("--albedo", options_.albedos, "Colour map, likewise")->allow_extra_args(false);
-  verb.add_option("--space", space_, "Space of the normals (guessed unless given)")
-      ->check(CLI::IsMember({"tangent", "object", "world"}));
-  verb.add_option("--green", green_,
-                  "up: OpenGL, down: DirectX (guessed from the curl unless given)")
-      ->check(CLI::IsMember({"up", "down"}));
-  verb.add_flag("--flip-v", options_.flip_v,
-                "The model's V runs the other way than its format says");
-  verb.add_option("--size", options_.size, "Larger side of the normal map in texels")
-      ->check(CLI::Range(1, 16384));
+void ModelFlags::add(Verb& verb) {
+  verb.takes("model", options_.model, "glTF, GLB or OBJ file").required();
+  verb.takes("--normal-map", options_.normal_maps,
+             "Normal map instead of the model's own: FILE, or SET=FILE with several sets");
+  verb.takes("--albedo", options_.albedos, "Colour map, likewise");
+  verb.takes("--space", space_, "Space of the normals (guessed unless given)")
+      .one_of({"tangent", "object", "world"});
+  verb.takes("--green", green_, "up: OpenGL, down: DirectX (guessed from the curl unless given)")
+      .one_of({"up", "down"});
+  verb.flag("--flip-v", options_.flip_v, "The model's V runs the other way than its format says");
+  verb.takes("--size", options_.size, "Larger side of the normal map in texels").between(1, 16384);
 }
 
 OpenOptions ModelFlags::options() const {
@@ -51,7 +48,7 @@ std::optional<Vec3f> read_vector(const std::string& text) {
 
 Vec3f parse_vector(const std::string& text, const std::string& flag) {
   if (const auto v = read_vector(text)) return *v;
-  throw CLI::ValidationError(flag, "must be three numbers x,y,z, not \"" + text + "\"");
+  throw WrongUse(flag, "must be three numbers x,y,z, not \"" + text + "\"");
 }
 
 ViewSpec parse_view(const std::string& text) {
@@ -63,10 +60,10 @@ ViewSpec parse_view(const std::string& text) {
     view.direction = *direction;
     return view;
   }
-  throw CLI::ValidationError("--view",
-                             "must be front, back, left, right, top, bottom or a direction "
-                             "x,y,z towards the viewer, not \"" +
-                                 text + "\"");
+  throw WrongUse("--view",
+                 "must be front, back, left, right, top, bottom or a direction "
+                 "x,y,z towards the viewer, not \"" +
+                     text + "\"");
 }
 
 void print_notes(const std::vector<std::string>& notes) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
-#include <CLI/CLI.hpp>
+#include "arguments.h"
 
 #include "normalshop/io/open_document.h"
 
@@ -12,7 +12,7 @@ namespace normalshop::cli {
 /// Flags of every verb that opens a model.
 class ModelFlags {
  public:
-  void add(CLI::App& verb);
+  void add(Verb& verb);
   OpenOptions options() const;
 
  private:
@@ -21,9 +21,9 @@ class ModelFlags {
   std::string green_;
 };
 
-/// "1,2.5,-3" as a vector. Throws CLI::ValidationError naming the flag.
+/// "1,2.5,-3" as a vector. Throws WrongUse naming the flag.
 Vec3f parse_vector(const std::string& text, const std::string& flag);
-/// A NamedView's name or a direction towards the viewer. Throws CLI::ValidationError otherwise.
+/// A NamedView's name or a direction towards the viewer. Throws WrongUse otherwise.
 ViewSpec parse_view(const std::string& text);
 
 /// Prints notes to standard error, where they don't disturb what another program reads.

@@ -1,5 +1,7 @@
 #include <cstdio>
-#include <memory>
+#include <filesystem>
+#include <optional>
+#include <string>
 
 #include "model_flags.h"
 #include "verbs.h"
@@ -34,13 +36,12 @@ void parse_resolution(const std::string& text, RenderOptions& options) {
       fits(options.height)) {
     return;
   }
-  throw CLI::ValidationError("--resolution",
-                             "must be WxH with sides from 1 to 16384, not \"" + text + "\"");
+  throw WrongUse("--resolution", "must be WxH with sides from 1 to 16384, not \"" + text + "\"");
 }
 
 ViewSpec choose_view(const RenderFlags& flags) {
   if (!flags.facing.empty()) {
-    if (!(flags.width > 0.0F)) throw CLI::ValidationError("--facing", "needs --width");
+    if (!(flags.width > 0.0F)) throw WrongUse("--facing", "needs --width");
     return FacingView{parse_vector(flags.facing, "--facing"), flags.width, flags.width};
   }
   return parse_view(flags.view);
@@ -51,7 +52,7 @@ void run_render(const RenderFlags& flags) {
   parse_resolution(flags.resolution, options);
   from_name(flags.style, options.style);
   if (!flags.light.empty()) options.light = parse_vector(flags.light, "--light");
-  if (options.light.isZero()) throw CLI::ValidationError("--light", "must not be 0,0,0");
+  if (options.light.isZero()) throw WrongUse("--light", "must not be 0,0,0");
   const ViewSpec spec = choose_view(flags);
   const auto center = flags.center.empty()
                           ? std::nullopt
@@ -74,28 +75,25 @@ void run_render(const RenderFlags& flags) {
 
 }  // namespace
 
-void add_render_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("render", "Draws a model with its normal maps");
-  const auto flags = std::make_shared<RenderFlags>();
-  flags->model.add(*verb);
-  verb->add_option("-o,--output", flags->output, "PNG file")->required();
-  verb->add_option("--view", flags->view,
-                   "front, back, left, right, top, bottom or a direction x,y,z towards the viewer")
-      ->capture_default_str();
-  verb->add_option("--center", flags->center, "Object-space point x,y,z in the picture's middle");
-  verb->add_option("--facing", flags->facing,
-                   "Look straight at the surface point nearest to x,y,z");
-  verb->add_option("--width", flags->width,
-                   "Width of the view in object units (the model's unless given)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--light", flags->light,
-                   "Direction x,y,z towards the light: x right, y up, z towards the viewer");
-  verb->add_option("--style", flags->style, "What to show")
-      ->check(CLI::IsMember({"lit", "normals", "albedo", "weight", "charts"}))
-      ->capture_default_str();
-  verb->add_option("--resolution", flags->resolution, "WxH in pixels")->capture_default_str();
-  verb->add_flag("--json", flags->json, "Print what was written as JSON");
-  verb->callback([flags] { run_render(*flags); });
+void add_render_verb(CommandLine& program) {
+  Verb verb = program.verb("render", "Draws a model with its normal maps");
+  RenderFlags& flags = verb.runs(run_render);
+  flags.model.add(verb);
+  verb.takes("-o,--output", flags.output, "PNG file").required();
+  verb.takes("--view", flags.view,
+             "front, back, left, right, top, bottom or a direction x,y,z towards the viewer")
+      .shows_default();
+  verb.takes("--center", flags.center, "Object-space point x,y,z in the picture's middle");
+  verb.takes("--facing", flags.facing, "Look straight at the surface point nearest to x,y,z");
+  verb.takes("--width", flags.width, "Width of the view in object units (the model's unless given)")
+      .positive();
+  verb.takes("--light", flags.light,
+             "Direction x,y,z towards the light: x right, y up, z towards the viewer");
+  verb.takes("--style", flags.style, "What to show")
+      .one_of({"lit", "normals", "albedo", "weight", "charts"})
+      .shows_default();
+  verb.takes("--resolution", flags.resolution, "WxH in pixels").shows_default();
+  verb.flag("--json", flags.json, "Print what was written as JSON");
 }
 
 }  // namespace normalshop::cli

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "arguments.h"
 
 /// One function a verb, each in its own file: adds its flags and what to run.
 namespace normalshop::cli {
 
-void add_edit_verb(CLI::App& app);
-void add_render_verb(CLI::App& app);
-void add_compare_verb(CLI::App& app);
-void add_info_verb(CLI::App& app);
-void add_demo_verb(CLI::App& app);
-void add_describe_verb(CLI::App& app);
+void add_edit_verb(CommandLine& program);
+void add_render_verb(CommandLine& program);
+void add_compare_verb(CommandLine& program);
+void add_info_verb(CommandLine& program);
+void add_demo_verb(CommandLine& program);
+void add_describe_verb(CommandLine& program);
 
 }  // namespace normalshop::cli

@@ -1,0 +1,103 @@
+#include "arguments.h"
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace normalshop::cli {
+
+namespace {
+
+/// The whole sentence for the user: whose fault, what, and where the help is.
+WrongUse wrong_use(const CLI::App& app, const std::string& what) {
+  const auto verbs = app.get_subcommands();
+  if (!verbs.empty()) {
+    const std::string verb = verbs.front()->get_name();
+    return WrongUse(verb, what + "; see normalshop " + verb + " --help");
+  }
+  const auto unknown = app.remaining();
+  const std::string missing =
+      unknown.empty() ? "a verb is missing" : "there is no verb or flag '" + unknown.front() + "'";
+  return WrongUse(missing + "; see normalshop --help");
+}
+
+}  // namespace
+
+Argument& Argument::required() {
+  option_->required();
+  return *this;
+}
+
+Argument& Argument::positive() {
+  option_->check(CLI::PositiveNumber);
+  return *this;
+}
+
+Argument& Argument::between(int lowest, int highest) {
+  option_->check(CLI::Range(lowest, highest));
+  return *this;
+}
+
+Argument& Argument::one_of(std::initializer_list<const char*> names) {
+  option_->check(CLI::IsMember(names));
+  return *this;
+}
+
+Argument& Argument::shows_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+template <class Value>
+Argument Verb::takes(const std::string& names, Value& value, const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+template <>
+Argument Verb::takes(const std::string& names, std::vector<std::string>& value,
+                     const std::string& help) {
+  // One value a flag, or a flag before the model's name would take that too.
+  return Argument(*app_->add_option(names, value, help)->allow_extra_args(false));
+}
+
+template Argument Verb::takes(const std::string&, std::filesystem::path&, const std::string&);
+template Argument Verb::takes(const std::string&, std::string&, const std::string&);
+template Argument Verb::takes(const std::string&, int&, const std::string&);
+template Argument Verb::takes(const std::string&, float&, const std::string&);
+template Argument Verb::takes(const std::string&, double&, const std::string&);
+
+void Verb::flag(const std::string& name, bool& value, const std::string& help) {
+  app_->add_flag(name, value, help);
+}
+
+void Verb::when_chosen(std::function<void()> action) { app_->callback(std::move(action)); }
+
+CommandLine::CommandLine(const std::string& program, const std::string& summary,
+                         const std::string& version)
+    : app_(std::make_unique<CLI::App>(summary)) {
+  app_->name(program);
+  app_->set_version_flag("--version", version);
+  app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+Verb CommandLine::verb(const std::string& name, const std::string& summary) {
+  return Verb(*app_->add_subcommand(name, summary));
+}
+
+void CommandLine::run(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // for help or the version
+    app_->exit(asked);
+  } catch (const CLI::ParseError& error) {
+    throw wrong_use(*app_, error.what());
+  } catch (const WrongUse& error) {
+    throw wrong_use(*app_, error.what());
+  }
+}
+
+}  // namespace normalshop::cli
