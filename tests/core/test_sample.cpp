@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "normalshop/core/sample.h"
@@ -41,6 +44,55 @@ TEST(SampleBicubic, IsExactForQuadraticsInside) {
 TEST(SampleBicubic, WorksOnOnePixel) {
   const SlopeImage one(1, 1, Vec2f(0.5F, -2.0F));
   EXPECT_NEAR((sample_bicubic(one.view(), 0.4F, 3.0F) - Vec2f(0.5F, -2.0F)).norm(), 0.0F, 1e-6F);
+}
+
+/// Sines with a period of the image's size, so that there is no border.
+float waves(float x, float y) {
+  return std::sin(6.2831853F * x / 9.0F) + std::cos(6.2831853F * y / 7.0F);
+}
+
+TEST(SampleRepeated, ReadsTheSameOnePeriodFurther) {
+  const Image<float> image = sampled(quadratic);
+  const auto linear = [&](float x, float y) {
+    return sample_bilinear<float, Border::Wrap>(image, x, y);
+  };
+  const auto cubic = [&](float x, float y) {
+    return sample_bicubic<float, Border::Wrap>(image, x, y);
+  };
+  for (const float x : {0.0F, 0.25F, 4.5F, 8.0F, 8.75F}) {
+    for (const float y : {0.0F, 3.5F, 6.0F, 6.5F}) {
+      EXPECT_EQ(linear(x, y), linear(x + 9.0F, y - 14.0F));
+      EXPECT_EQ(cubic(x, y), cubic(x - 27.0F, y + 7.0F));
+    }
+  }
+  EXPECT_EQ(linear(3.0F, 2.0F), image(3, 2));
+  EXPECT_EQ(cubic(-6.0F, 9.0F), image(3, 2));
+  EXPECT_EQ(linear(8.5F, 0.0F), 0.5F * (image(8, 0) + image(0, 0)));
+}
+
+TEST(SampleRepeated, HasNoBorder) {
+  const Image<float> image = sampled(waves);
+  double inside = 0.0;
+  double across = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const float t = static_cast<float>(k) / 100.0F;
+    const auto error = [&](float x, float y) {
+      return static_cast<double>(
+          std::abs(sample_bicubic<float, Border::Wrap>(image, x, y) - waves(x, y)));
+    };
+    inside = std::max(inside, error(2.0F + 4.0F * t, 3.0F));
+    across = std::max(across, error(7.0F + 3.0F * t, 3.0F));
+  }
+  EXPECT_LT(inside, 0.02);
+  EXPECT_LT(across, 0.02);
+}
+
+TEST(SampleRepeated, SurvivesPlacesThatAreNone) {
+  const Image<float> image = sampled(quadratic);
+  for (const float x : {1e30F, -1e30F, std::numeric_limits<float>::quiet_NaN(), -1e-30F}) {
+    EXPECT_TRUE(std::isfinite(sample_bilinear<float, Border::Wrap>(image, x, x)));
+    EXPECT_TRUE(std::isfinite(sample_bicubic<float, Border::Wrap>(image, x, x)));
+  }
 }
 
 TEST(CubicWeights, SumToOne) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "normalshop/core/border.h"
 #include "normalshop/core/image.h"
 
 /// Reading images between pixel centres. Pixel (i, j) has its centre at (i, j) here.
@@ -19,17 +20,29 @@ T zero() {
   }
 }
 
-/// Bilinear; outside the image the border pixel continues.
-template <class T>
+/// The position that is read for x in a row of n > 0 pixels: in [0, n - 1], or in [0, n] where the
+/// image repeats.
+template <Border border>
+float position_inside(float x, int n) {
+  static_assert(border != Border::Mirror, "the mirror image of a slope has another sign");
+  const auto size = static_cast<float>(n);
+  if constexpr (border == Border::Clamp) return std::clamp(x, 0.0F, size - 1.0F);
+  return std::abs(x) < 1e9F ? std::clamp(x - size * std::floor(x / size), 0.0F, size) : 0.0F;
+}
+
+/// Bilinear; outside the image the border pixel continues, or the image repeats.
+template <class T, Border border = Border::Clamp>
 T sample_bilinear(const ImageView<T>& image, float x, float y) {
-  const float cx = std::clamp(x, 0.0F, static_cast<float>(image.width() - 1));
-  const float cy = std::clamp(y, 0.0F, static_cast<float>(image.height() - 1));
-  const int x0 = static_cast<int>(cx);
-  const int y0 = static_cast<int>(cy);
-  const int x1 = std::min(x0 + 1, image.width() - 1);
-  const int y1 = std::min(y0 + 1, image.height() - 1);
-  const float fx = cx - static_cast<float>(x0);
-  const float fy = cy - static_cast<float>(y0);
+  const float cx = position_inside<border>(x, image.width());
+  const float cy = position_inside<border>(y, image.height());
+  const int left = static_cast<int>(cx);
+  const int upper = static_cast<int>(cy);
+  const float fx = cx - static_cast<float>(left);
+  const float fy = cy - static_cast<float>(upper);
+  const int x0 = border_pixel(left, image.width(), border).index;
+  const int y0 = border_pixel(upper, image.height(), border).index;
+  const int x1 = border_pixel(left + 1, image.width(), border).index;
+  const int y1 = border_pixel(upper + 1, image.height(), border).index;
   const T top = image(x0, y0) * (1.0F - fx) + image(x1, y0) * fx;
   const T bottom = image(x0, y1) * (1.0F - fx) + image(x1, y1) * fx;
   return top * (1.0F - fy) + bottom * fy;
@@ -80,21 +93,22 @@ inline std::array<float, 4> cubic_weights(float t) {
           -1.5F * t3 + 2.0F * t2 + 0.5F * t, 0.5F * t3 - 0.5F * t2};
 }
 
-/// Catmull-Rom bicubic; outside the image the border pixel continues. Exact for quadratics inside.
-template <class T>
+/// Catmull-Rom bicubic; outside the image the border pixel continues, or the image repeats. Exact
+/// for quadratics inside.
+template <class T, Border border = Border::Clamp>
 T sample_bicubic(const ImageView<T>& image, float x, float y) {
-  const float cx = std::clamp(x, 0.0F, static_cast<float>(image.width() - 1));
-  const float cy = std::clamp(y, 0.0F, static_cast<float>(image.height() - 1));
+  const float cx = position_inside<border>(x, image.width());
+  const float cy = position_inside<border>(y, image.height());
   const int x0 = static_cast<int>(cx);
   const int y0 = static_cast<int>(cy);
   const std::array<float, 4> wx = cubic_weights(cx - static_cast<float>(x0));
   const std::array<float, 4> wy = cubic_weights(cy - static_cast<float>(y0));
   T sum = zero<T>();
   for (int j = 0; j < 4; ++j) {
-    const T* row = image.row(std::clamp(y0 + j - 1, 0, image.height() - 1));
+    const T* row = image.row(border_pixel(y0 + j - 1, image.height(), border).index);
     T line = zero<T>();
     for (int i = 0; i < 4; ++i) {
-      const int xi = std::clamp(x0 + i - 1, 0, image.width() - 1);
+      const int xi = border_pixel(x0 + i - 1, image.width(), border).index;
       line += row[xi] * wx[static_cast<std::size_t>(i)];
     }
     sum += line * wy[static_cast<std::size_t>(j)];
