@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/parallel.h"
 #include "normalshop/core/random.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/stamp.h"
@@ -175,9 +176,100 @@ TEST(Stamp, FadesAtItsBorderAndClearsTheRest) {
   EXPECT_EQ(color(2, 2), Vec3f(0.0F, 0.0F, 0.0F));
 }
 
+/// Slopes of sin(2 pi x / 16) sin(2 pi y / 16), y up from the middle, on one period.
+Vec2f wave_slope(float x, float y) {
+  const float w = 6.2831853F / 16.0F;
+  return {w * std::cos(w * x) * std::sin(w * y), w * std::sin(w * x) * std::cos(w * y)};
+}
+
+Patch wave_patch() {
+  Patch patch;
+  patch.slopes.resize(16, 16);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      patch.slopes(x, y) = wave_slope(static_cast<float>(x) - 7.5F, 7.5F - static_cast<float>(y));
+    }
+  }
+  return patch;
+}
+
+TEST(StampRepeated, IsTheRepeatedPatchAtOneToOne) {
+  const Patch patch = noise_patch(13, 8);
+  SlopeImage out(40, 30);
+  const Vec2f center(6.0F, 3.5F);
+  EXPECT_EQ(stamp_repeated(out, {}, {-9, 0, 99, 99}, patch, center), out.rect());
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) EXPECT_EQ(out(x, y), patch.slopes(x % 13, y % 8));
+  }
+}
+
+TEST(StampRepeated, TransformsAWaveWithoutSeams) {
+  const Patch patch = wave_patch();
+  StampOptions o;
+  o.size = 37.0F;
+  o.rotation = 33.0F;
+  o.scale_x = -1.3F;
+  o.shear = 0.4F;
+  o.relief = -0.5F;
+  SlopeImage out(200, 150);
+  const Vec2f center(91.3F, 60.7F);
+  stamp_repeated(out, {}, out.rect(), patch, center, o);
+  const Mat2f inverse = placement_matrix(o).inverse();
+  double worst = 0.0;
+  for (int y = 0; y < 150; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const Vec2f p(static_cast<float>(x) - center.x(), center.y() - static_cast<float>(y));
+      const Vec2f q = inverse * p * (16.0F / 37.0F);
+      const Vec2f expected = -0.5F * (inverse.transpose() * wave_slope(q.x(), q.y()));
+      worst =
+          std::max(worst, angle_degrees(normal_from_slope(out(x, y)), normal_from_slope(expected)));
+    }
+  }
+  EXPECT_LT(worst, 0.2);
+}
+
+TEST(StampRepeated, CopiesSmallerThanAPixelAreTheMean) {
+  Patch patch = wave_patch();
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) patch.slopes(x, y) += Vec2f(0.25F, -0.5F);
+  }
+  patch.opacity = MaskImage(16, 16, 0.5F);
+  StampOptions o;
+  for (const float size : {1.0F, 0.37F, 1e-3F}) {
+    o.size = size;
+    SlopeImage out(9, 9);
+    MaskImage coverage(9, 9);
+    stamp_repeated(out, coverage, out.rect(), patch, {4.0F, 4.0F}, o);
+    EXPECT_NEAR(out(7, 2).x(), 0.125F, 0.01F) << size;
+    EXPECT_NEAR(out(7, 2).y(), -0.25F, 0.01F) << size;
+    EXPECT_NEAR(coverage(7, 2), 0.5F, 1e-5F);
+  }
+}
+
+TEST(StampRepeated, ARegionGivesThePixelsOfTheWholeForAnyNumberOfThreads) {
+  const Patch patch = noise_patch(13, 8);
+  StampOptions o;
+  o.size = 9.0F;
+  o.rotation = 20.0F;
+  SlopeImage whole(60, 50);
+  SlopeImage part(60, 50, Vec2f::Constant(9.0F));
+  stamp_repeated(whole, {}, whole.rect(), patch, {30.0F, 20.0F}, o);
+  const Rect region = {11, 7, 40, 33};
+  const ThreadLimit limit(1);
+  EXPECT_EQ(stamp_repeated(part, {}, region, patch, {30.0F, 20.0F}, o), region);
+  for (int y = 0; y < 50; ++y) {
+    for (int x = 0; x < 60; ++x) {
+      const bool inside = region.contains(x, y);
+      EXPECT_EQ(part(x, y), inside ? whole(x, y) : Vec2f(Vec2f::Constant(9.0F)));
+    }
+  }
+  EXPECT_TRUE(stamp_repeated(part, {}, {70, 0, 80, 9}, patch, {30.0F, 20.0F}, o).empty());
+}
+
 TEST(Stamp, RejectsBadInput) {
   SlopeImage out(8, 8);
   EXPECT_THROW(stamp(out, {}, out.rect(), {}, {4.0F, 4.0F}), InvalidInput);
+  EXPECT_THROW(stamp_repeated(out, {}, out.rect(), {}, {4.0F, 4.0F}), InvalidInput);
   Patch patch = noise_patch(4, 4);
   StampOptions o;
   o.scale_x = 0.0F;

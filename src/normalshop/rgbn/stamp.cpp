@@ -24,6 +24,8 @@ void check(const Patch& patch, const StampOptions& o) {
   }
 }
 
+enum class Copies { One, Endless };
+
 /// Maps pixels of the chart to pixels of the patch, and gradients back.
 struct Mapping {
   Vec2f center;        ///< in the chart
@@ -59,11 +61,23 @@ float size_scale(const Patch& patch, const StampOptions& o) {
   return o.size > 0.0F ? o.size / static_cast<float>(patch.slopes.width()) : 1.0F;
 }
 
-int positions(float step) {
-  return step > 1.001F ? static_cast<int>(std::ceil(std::min(step, 1024.0F))) : 1;
+/// One copy is small when its pixels are, many are not.
+int positions(float step, Copies copies) {
+  const float most = copies == Copies::One ? 1024.0F : 16.0F;
+  return step > 1.001F ? static_cast<int>(std::ceil(std::min(step, most))) : 1;
 }
 
-Mapping make_mapping(const Patch& patch, const Vec2f& center, const StampOptions& o) {
+Rect bounds_of(const Vec2f& center, const Vec2f& half) {
+  const Vec2f low = (center - half).cwiseMax(-1e8F);
+  const Vec2f high = (center + half).cwiseMin(1e8F);
+  return {static_cast<int>(std::floor(std::min(low.x(), 1e8F))),
+          static_cast<int>(std::floor(std::min(low.y(), 1e8F))),
+          static_cast<int>(std::ceil(std::max(high.x(), -1e8F))) + 1,
+          static_cast<int>(std::ceil(std::max(high.y(), -1e8F))) + 1};
+}
+
+Mapping make_mapping(const Patch& patch, const Vec2f& center, const StampOptions& o,
+                     Copies copies) {
   check(patch, o);
   if (!center.allFinite()) throw InvalidInput("stamp: the centre must be numbers");
   const Mat2f placed = placement_matrix(o);
@@ -80,15 +94,10 @@ Mapping make_mapping(const Patch& patch, const Vec2f& center, const StampOptions
   m.to_patch = placed_inverse / scale;
   m.to_patch(0, 1) = -m.to_patch(0, 1);
   m.to_patch(1, 0) = -m.to_patch(1, 0);
-  const Vec2f half = half_extent(patch, scale * placed);
-  const Vec2f low = (center - half).cwiseMax(-1e8F);
-  const Vec2f high = (center + half).cwiseMin(1e8F);
-  m.bounds = {static_cast<int>(std::floor(std::min(low.x(), 1e8F))),
-              static_cast<int>(std::floor(std::min(low.y(), 1e8F))),
-              static_cast<int>(std::ceil(std::max(high.x(), -1e8F))) + 1,
-              static_cast<int>(std::ceil(std::max(high.y(), -1e8F))) + 1};
-  m.grid_x = positions(m.to_patch.col(0).norm());
-  m.grid_y = positions(m.to_patch.col(1).norm());
+  const bool endless = copies == Copies::Endless;
+  m.bounds = bounds_of(center, endless ? Vec2f(1e8F, 1e8F) : half_extent(patch, scale * placed));
+  m.grid_x = positions(m.to_patch.col(0).norm(), copies);
+  m.grid_y = positions(m.to_patch.col(1).norm(), copies);
   return m;
 }
 
@@ -110,7 +119,7 @@ struct Pixel {
 };
 
 /// Mean of opacity * value and of opacity over the pixel.
-template <class T>
+template <class T, Border outside>
 Pixel<T> sample(const Patch& patch, ImageView<T> values, const Mapping& m, float border, int x,
                 int y) {
   Pixel<T> sum;
@@ -120,11 +129,13 @@ Pixel<T> sample(const Patch& patch, ImageView<T> values, const Mapping& m, float
       const float dx = (static_cast<float>(i) + 0.5F) / static_cast<float>(m.grid_x) - 0.5F;
       const float dy = (static_cast<float>(j) + 0.5F) / static_cast<float>(m.grid_y) - 0.5F;
       const Vec2f p = m.patch_position(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
-      float weight = border_weight(patch, p, border);
+      float weight = outside == Border::Wrap ? 1.0F : border_weight(patch, p, border);
       if (weight <= 0.0F) continue;
-      if (!patch.opacity.empty()) weight *= sample_bilinear<float>(patch.opacity, p.x(), p.y());
-      const T value = shrinks ? sample_bilinear<T>(values, p.x(), p.y())
-                              : sample_bicubic<T>(values, p.x(), p.y());
+      if (!patch.opacity.empty()) {
+        weight *= sample_bilinear<float, outside>(patch.opacity, p.x(), p.y());
+      }
+      const T value = shrinks ? sample_bilinear<T, outside>(values, p.x(), p.y())
+                              : sample_bicubic<T, outside>(values, p.x(), p.y());
       sum.weighted += weight * value;
       sum.weight += weight;
     }
@@ -137,11 +148,9 @@ Pixel<T> sample(const Patch& patch, ImageView<T> values, const Mapping& m, float
   return sum;
 }
 
-}  // namespace
-
-Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
-           const Vec2f& center, const StampOptions& options) {
-  const Mapping m = make_mapping(patch, center, options);
+template <Border outside>
+Rect lay(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch, const Mapping& m,
+         float border) {
   region = intersect(region, details.rect());
   if (region.empty()) return {};
   parallel_for(static_cast<std::size_t>(region.height()), 8, [&](std::size_t a, std::size_t b) {
@@ -149,7 +158,7 @@ Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch
       for (int x = region.x0; x < region.x1; ++x) {
         Pixel<Vec2f> pixel;
         if (m.bounds.contains(x, y)) {
-          pixel = sample<Vec2f>(patch, patch.slopes, m, options.border, x, y);
+          pixel = sample<Vec2f, outside>(patch, patch.slopes, m, border, x, y);
         }
         details(x, y) = m.gradient * pixel.weighted;
         if (!coverage.empty()) coverage(x, y) = pixel.weight;
@@ -159,16 +168,31 @@ Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch
   return intersect(region, m.bounds);
 }
 
+}  // namespace
+
+Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
+           const Vec2f& center, const StampOptions& options) {
+  const Mapping m = make_mapping(patch, center, options, Copies::One);
+  return lay<Border::Clamp>(details, coverage, region, patch, m, options.border);
+}
+
+Rect stamp_repeated(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
+                    const Vec2f& center, const StampOptions& options) {
+  const Mapping m = make_mapping(patch, center, options, Copies::Endless);
+  return lay<Border::Wrap>(details, coverage, region, patch, m, 0.0F);
+}
+
 Rect stamp_color(ColorSpan color, Rect region, const Patch& patch, const Vec2f& center,
                  const StampOptions& options) {
-  const Mapping m = make_mapping(patch, center, options);
+  const Mapping m = make_mapping(patch, center, options, Copies::One);
   if (patch.color.empty()) throw InvalidInput("stamp: the patch has no colour");
   region = intersect(intersect(region, color.rect()), m.bounds);
   if (region.empty()) return {};
   parallel_for(static_cast<std::size_t>(region.height()), 8, [&](std::size_t a, std::size_t b) {
     for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
       for (int x = region.x0; x < region.x1; ++x) {
-        const auto pixel = sample<Vec3f>(patch, patch.color, m, options.border, x, y);
+        const auto pixel =
+            sample<Vec3f, Border::Clamp>(patch, patch.color, m, options.border, x, y);
         color(x, y) = (1.0F - pixel.weight) * color(x, y) + pixel.weighted;
       }
     }

@@ -58,6 +58,13 @@ struct StampOptions : Placement {
 Rect stamp(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
            const Vec2f& center, const StampOptions& options = {});
 
+/// The patch repeated without end, one copy's centre on `center`: stamp() without border, on all of
+/// `region`. A patch that tiles shows no seam at any size; one that is averaged over more than 16
+/// of its pixels (a copy under a 16th of them) is averaged over 16 x 16 places in each of the
+/// chart's.
+Rect stamp_repeated(SlopeSpan details, MaskSpan coverage, Rect region, const Patch& patch,
+                    const Vec2f& center, const StampOptions& options = {});
+
 /// The patch's colour laid over `color` (linear) with the same placement, by opacity.
 Rect stamp_color(ColorSpan color, Rect region, const Patch& patch, const Vec2f& center,
                  const StampOptions& options = {});
