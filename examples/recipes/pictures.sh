@@ -36,6 +36,7 @@ picture words $head_model "$head_flags" "$skin --width 2.9 --center 0,2.4,0 --li
 picture wrinkles $head_model "$head_flags" "$skin --view=-0.35,0,1 --width 3.3 --center 0,1.75,0"
 picture raised $head_model "$head_flags" "$skin --view=-1,0.3,1 --width 3 --center -0.3,1.9,0"
 picture bumps $head_model "$head_flags" "$skin --view=0.35,0,1 --width 4.6 --center 0,1.5,0"
+picture bricks $head_model "$head_flags" "$skin --view=0.35,0,1 --width 4.6 --center 0,1.5,0"
 picture smooth $head_model "$head_flags" "$skin --width 2.6 --center 0,1.3,0 --light 0.5,0.5,1"
 picture waterbottle khr_waterbottle/WaterBottle.gltf "" "--view=-0.3,0.3,1 --width 0.17 --center 0,0.048,0"
 picture tea_set polyhaven_tea_set_01/tea_set_01_1k.gltf "--size 4096" \

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <cmath>
+
 #include "normalshop/core/error.h"
 #include "normalshop/document/assets.h"
 
 namespace normalshop::test {
 
-/// The patch "cone.png" and, for every text, one square letter of half an em around the origin.
+/// The patches "cone.png" and "wave.png", which tiles sideways, and, for every text, one square
+/// letter of half an em around the origin.
 class FakeAssets : public Assets {
  public:
   Patch patch(const std::string& file) override {
+    if (file == "wave.png") return wave();
     if (file != "cone.png") throw IoError(file + ": cannot be read: there is no such file");
     constexpr int size = 32;
     Patch patch{SlopeImage(size, size), MaskImage(size, size), {}};
@@ -24,6 +28,19 @@ class FakeAssets : public Assets {
   Outline text(const std::string&, const std::string& font) override {
     if (!font.empty()) throw IoError(font + ": cannot be read: there is no such file");
     return {{{-0.25F, -0.25F}, {0.25F, -0.25F}, {0.25F, 0.25F}, {-0.25F, 0.25F}}};
+  }
+
+ private:
+  /// Slopes (cos(2 pi x), 0) / 2 over a width of 1, x from the middle.
+  static Patch wave() {
+    Patch patch{SlopeImage(64, 32), {}, {}};
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const float phase = 6.2831853F * (static_cast<float>(x) - 31.5F) / 64.0F;
+        patch.slopes(x, y) = {0.5F * std::cos(phase), 0.0F};
+      }
+    }
+    return patch;
   }
 };
 

@@ -27,6 +27,11 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
    "options": {"text": "two\nlines \"quoted\"", "size": 0.1, "height": -0.01, "bevel": 0.02,
                "rotation": -90, "shear": 1},
    "strokes": [[[0.1, 0.1]]]},
+  {"operator": "combine", "view": "right",
+   "options": {"image": "cone.png", "size": 0.4, "repeat": true, "relief": 3, "rotation": 30,
+               "scale_x": -2, "scale_y": 0.5, "shear": -1, "heights": "grow", "border": 0.2,
+               "area": "inside", "brush": 0.1, "hardness": 0.3, "feather": 0.2},
+   "strokes": [[[0, 0], [1, 1], [0, 1]]]},
   {"operator": "smooth", "view": {"direction": [1, 0, 0]},
    "options": {"sigma": 0.05, "area": "brush", "brush": 0.4, "hardness": 0.25},
    "strokes": [[[0, 0], [1, 1]]]},
@@ -36,7 +41,7 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
 
 TEST(Recipe, WhatIsWrittenReadsBackTheSame) {
   const Recipe recipe = parse(full_recipe);
-  ASSERT_EQ(recipe.edits.size(), 5U);
+  ASSERT_EQ(recipe.edits.size(), 6U);
   const std::string once = to_json(to_value(recipe));
   EXPECT_EQ(to_json(to_value(parse(once))), once);
 }
@@ -45,7 +50,7 @@ TEST(Recipe, EveryFieldComesThrough) {
   const std::string text = to_json(to_value(parse(full_recipe)));
   const Value written = parse_json(text, "");
   const Value given = parse_json(full_recipe, "");
-  for (std::size_t i = 0; i < 5; ++i) {
+  for (std::size_t i = 0; i < 6; ++i) {
     const Value& before = given.find("edits")->array()->at(i);
     const Value& after = written.find("edits")->array()->at(i);
     for (const auto& [name, value] : *before.object()) {

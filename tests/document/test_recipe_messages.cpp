@@ -46,10 +46,12 @@ TEST(RecipeMessages, AnEdit) {
   EXPECT_EQ(message_of_edit("7"),
             "r.json: edits[0] must be an object with fields, not the number 7");
   EXPECT_EQ(message_of_edit(R"({"view": "front"})"),
-            "r.json: edits[0].operator is missing; it must be pen, stamp, text, smooth or sharpen");
-  EXPECT_EQ(message_of_edit(R"({"operator": "paint", "view": "front"})"),
-            "r.json: edits[0].operator must be pen, stamp, text, smooth or sharpen, not the text "
-            "\"paint\"");
+            "r.json: edits[0].operator is missing; it must be pen, stamp, text, combine, smooth or "
+            "sharpen");
+  EXPECT_EQ(
+      message_of_edit(R"({"operator": "paint", "view": "front"})"),
+      "r.json: edits[0].operator must be pen, stamp, text, combine, smooth or sharpen, not the "
+      "text \"paint\"");
   EXPECT_EQ(message_of_edit(R"({"operator": "smooth", "options": {"sigma": 1}})"),
             "r.json: edits[0].view is missing; it must be front, back, left, right, top or bottom, "
             "or an object with \"direction\" or \"facing\"");
@@ -117,6 +119,17 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "r.json: edits[0].options: x.png: cannot be read: there is no such file");
   EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 1, "scale_x": 0})"),
             "r.json: edits[0].options.scale_x must be a scale that is not 0, not the number 0");
+  EXPECT_EQ(other("combine", "{}"), "r.json: edits[0].options.image is missing; it must be a text");
+  EXPECT_EQ(other("combine", R"({"image": ""})"),
+            "r.json: edits[0].options.image must be the name of a file, not the text \"\"");
+  EXPECT_EQ(other("combine", R"({"image": "cone.png", "scale_y": 0})"),
+            "r.json: edits[0].options.scale_y must be a scale that is not 0, not the number 0");
+  EXPECT_EQ(other("combine", R"({"image": "cone.png", "area": "brush"})"),
+            "r.json: edits[0].options.brush is missing; it must be a number above 0 for the area "
+            "\"brush\"");
+  EXPECT_EQ(other("combine", R"({"image": "cone.png"})"),
+            "r.json: edits[0].strokes must be left out for the area \"view\"; the areas \"brush\" "
+            "and \"inside\" take strokes");
   EXPECT_EQ(other("text", R"({"text": "", "size": 1, "height": 1, "bevel": 1})"),
             "r.json: edits[0].options.text must be a text that is not empty, not the text \"\"");
   EXPECT_EQ(other("smooth", R"({"sigma": 1, "area": "brush"})"),

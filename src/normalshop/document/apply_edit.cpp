@@ -179,6 +179,8 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   input.strokes = to_pixels(edit.strokes, chart.grid);
   input.pixel = chart.grid.pixel;
   input.view = pixel_rect(chart.grid, view_extent(view));
+  input.view_center = chart.grid.to_pixel({0.0F, 0.0F});
+  input.view_width = view.width / chart.grid.pixel;
   input.model = pixel_rect(chart.grid, model);
   input.region = intersect(grow(pixel_rect(chart.grid, extent), 2), chart.weight.rect());
   check_on_surface(edit, input.strokes, chart, input.region, model);

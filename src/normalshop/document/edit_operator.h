@@ -30,14 +30,16 @@ Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bo
 
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {
-  SlopeView source;    ///< before the edit (with details ignored: the base surface); extended past
-                       ///< borders; empty unless the operator reads()
-  MaskView validity;   ///< the weight of the effective chart: how far source counts; empty likewise
-  Rect region;         ///< where the result is wanted; the rest stays as it is
-  Rect view;           ///< the view's whole extent in pixels of this chart
-  Rect model;          ///< a box around the whole model, likewise
-  float pixel = 1.0F;  ///< object units per pixel
-  std::vector<Stroke> strokes;  ///< in pixels
+  SlopeView source;   ///< before the edit (with details ignored: the base surface); extended past
+                      ///< borders; empty unless the operator reads()
+  MaskView validity;  ///< the weight of the effective chart: how far source counts; empty likewise
+  Rect region;        ///< where the result is wanted; the rest stays as it is
+  Rect view;          ///< the view's whole extent in pixels of this chart
+  Rect model;         ///< a box around the whole model, likewise
+  Vec2f view_center = Vec2f::Zero();  ///< the middle of the view, between pixels too
+  float view_width = 1.0F;            ///< in pixels, not rounded
+  float pixel = 1.0F;                 ///< object units per pixel
+  std::vector<Stroke> strokes;        ///< in pixels
 };
 
 /// How an operator uses its strokes: what of them must meet the surface.

@@ -67,6 +67,12 @@ Stroke view_polygon(const Rect& view, const Rect& model, float feather) {
 
 }  // namespace
 
+void check_brush(const FilterAreaOptions& options, const FieldReader& reader) {
+  if (options.area == FilterArea::Brush && !(options.brush > 0.0F)) {
+    reader.required("brush").fail("a number above 0 for the area \"brush\"");
+  }
+}
+
 void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes,
                 const std::string& path) {
   if (options.area == FilterArea::View) {
@@ -87,6 +93,10 @@ void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>&
                          "] must have at least 3 points to enclose an area");
     }
   }
+}
+
+StrokeUse area_stroke_use(const FilterAreaOptions& options) {
+  return options.area == FilterArea::Inside ? StrokeUse::Inside : StrokeUse::Path;
 }
 
 Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes) {

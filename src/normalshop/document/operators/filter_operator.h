@@ -25,17 +25,13 @@ class FilterOperator : public EditOperator {
   using Options = FilterEditOptions<typename Filter::Options>;
 
   explicit FilterOperator(const FieldReader& options) : options_(read_options<Options>(options)) {
-    if (options_.area == FilterArea::Brush && !(options_.brush > 0.0F)) {
-      options.required("brush").fail("a number above 0 for the area \"brush\"");
-    }
+    check_brush(options_, options);
     Filter::check(options_, options);
   }
   std::string_view name() const override { return Filter::name; }
   Value options() const override { return options_value(options_); }
   bool reads() const override { return true; }
-  StrokeUse stroke_use() const override {
-    return options_.area == FilterArea::Inside ? StrokeUse::Inside : StrokeUse::Path;
-  }
+  StrokeUse stroke_use() const override { return area_stroke_use(options_); }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
     check_area(options_, strokes, path);
@@ -63,8 +59,7 @@ class FilterOperator : public EditOperator {
 
 template <class Filter>
 OperatorType filter_type() {
-  return {Filter::name, Filter::summary,
-          "Where it works, for the areas \"brush\" and \"inside\"; none for \"view\"",
+  return {Filter::name, Filter::summary, area_strokes,
           describe_fields<typename FilterOperator<Filter>::Options>,
           [](const FieldReader& options) -> std::unique_ptr<EditOperator> {
             return std::make_unique<FilterOperator<Filter>>(options);

@@ -8,6 +8,7 @@ namespace normalshop {
 OperatorType pen_operator();
 OperatorType stamp_operator();
 OperatorType text_operator();
+OperatorType combine_operator();
 OperatorType smooth_operator();
 OperatorType sharpen_operator();
 

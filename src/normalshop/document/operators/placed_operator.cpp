@@ -13,6 +13,14 @@ ImageSpan<T> part(ImageSpan<T> image, const Rect& r) {
 
 }  // namespace
 
+void check_scales(const FieldReader& options) {
+  for (const std::string_view name : {"scale_x", "scale_y"}) {
+    if (options.has(name) && options.required(name).number() == 0.0) {
+      options.required(name).fail("a scale that is not 0");
+    }
+  }
+}
+
 Rect PlacedOperator::add_copy(const OperatorInput& input, const Vec2f& position, SlopeSpan change,
                               MaskSpan coverage) const {
   const int reach = copy_reach(input.pixel);

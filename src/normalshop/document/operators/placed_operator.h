@@ -7,6 +7,9 @@
 
 namespace normalshop {
 
+/// Throws InvalidInput for a scale_x or scale_y of 0.
+void check_scales(const FieldReader& options);
+
 /// Base of operators that lay something down at every point of the strokes: stamps and text.
 class PlacedOperator : public EditOperator {
  public:

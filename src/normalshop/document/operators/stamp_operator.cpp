@@ -33,11 +33,7 @@ class StampOperator : public PlacedOperator {
     if (options_.patch.empty()) options.required("patch").fail("the name of a file");
     const FieldReader size = options.required("size");
     if (options_.size <= 0.0F) size.fail("a number above 0");
-    for (const std::string_view name : {"scale_x", "scale_y"}) {
-      if (options.has(name) && options.required(name).number() == 0.0) {
-        options.required(name).fail("a scale that is not 0");
-      }
-    }
+    check_scales(options);
   }
   std::string_view name() const override { return "stamp"; }
   Value options() const override { return options_value(options_); }

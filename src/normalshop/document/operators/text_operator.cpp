@@ -26,11 +26,7 @@ class TextOperator : public PlacedOperator {
   explicit TextOperator(const FieldReader& options)
       : options_(read_options<TextEditOptions>(options)) {
     if (options_.text.empty()) options.required("text").fail("a text that is not empty");
-    for (const std::string_view name : {"scale_x", "scale_y"}) {
-      if (options.has(name) && options.required(name).number() == 0.0) {
-        options.required(name).fail("a scale that is not 0");
-      }
-    }
+    check_scales(options);
   }
   std::string_view name() const override { return "text"; }
   Value options() const override { return options_value(options_); }

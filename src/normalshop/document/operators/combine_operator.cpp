@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <array>
+
+#include "normalshop/core/parallel.h"
+#include "normalshop/document/operators/filter_area.h"
+#include "normalshop/document/operators/operators.h"
+#include "normalshop/document/operators/placed_operator.h"
+
+namespace normalshop {
+
+namespace {
+
+struct CombineEditOptions : StampOptions, FilterAreaOptions {
+  std::string image;
+  bool repeat = false;
+
+  static constexpr std::array<std::string_view, 1> required_fields{"image"};
+  static constexpr auto fields() {
+    using Own = CombineEditOptions;
+    return std::tuple_cat(
+        std::tuple{field("image", &Own::image,
+                         "File of the image: a tangent-space normal map, green up, its alpha is "
+                         "the opacity; relative to the recipe"),
+                   field<Own, float>("size", &Own::size, "length", 0.0, 1e6,
+                                     "Width of one copy on the surface; 0: the width of the view"),
+                   field("repeat", &Own::repeat,
+                         "Repeats the image without end, instead of laying it once; one copy's "
+                         "middle is the view's"),
+                   field<Own, float>("relief", &Own::relief, "1", -100.0, 100.0,
+                                     "Multiplies the image's heights; negative digs; 0 flattens")},
+        placement_fields<Own>(),
+        std::tuple{field<Own, StampHeights>("heights", &Own::heights,
+                                            "Whether heights keep or grow when the image is "
+                                            "scaled"),
+                   field<Own, float>("border", &Own::border, "1", 0.0, 0.5,
+                                     "Part of the image's size over which it fades out at its "
+                                     "border; 0 cuts it off; without effect where it repeats")},
+        filter_area_fields<Own>());
+  }
+};
+
+/// change and coverage become those of the mask's part.
+void weigh(MaskView mask, SlopeSpan change, MaskSpan coverage, const Rect& region) {
+  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
+    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
+      for (int x = region.x0; x < region.x1; ++x) {
+        change(x, y) *= mask(x, y);
+        coverage(x, y) *= mask(x, y);
+      }
+    }
+  });
+}
+
+class CombineOperator : public EditOperator {
+ public:
+  explicit CombineOperator(const FieldReader& options)
+      : options_(read_options<CombineEditOptions>(options)) {
+    if (options_.image.empty()) options.required("image").fail("the name of a file");
+    check_scales(options);
+    check_brush(options_, options);
+  }
+  std::string_view name() const override { return "combine"; }
+  Value options() const override { return options_value(options_); }
+  void load(Assets& assets) override { image_ = assets.patch(options_.image); }
+  bool reads() const override { return false; }
+  StrokeUse stroke_use() const override { return area_stroke_use(options_); }
+  void check_strokes(const std::vector<UnitStroke>& strokes,
+                     const std::string& path) const override {
+    check_area(options_, strokes, path);
+  }
+  Extent extent(const std::vector<UnitStroke>& strokes) const override {
+    return area_extent(options_, strokes);
+  }
+
+  Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
+    CombineEditOptions scaled = scale_lengths(options_, 1.0F / input.pixel);
+    scaled.size = options_.size > 0.0F ? std::max(scaled.size, 1e-6F) : input.view_width;
+    MaskImage mask(change.width(), change.height(), 0.0F);
+    const Rect region = intersect(area_mask(scaled, input, mask), input.region);
+    if (region.empty()) return {};
+    const auto lay = scaled.repeat ? stamp_repeated : stamp;
+    lay(change, coverage, region, image_, input.view_center, scaled);
+    weigh(mask, change, coverage, region);
+    return region;
+  }
+
+ private:
+  CombineEditOptions options_;
+  Patch image_;
+};
+
+}  // namespace
+
+OperatorType combine_operator() {
+  return {"combine", "Lays an RGBN image over the view, once or repeated", area_strokes,
+          describe_fields<CombineEditOptions>,
+          [](const FieldReader& options) -> std::unique_ptr<EditOperator> {
+            return std::make_unique<CombineOperator>(options);
+          }};
+}
+
+}  // namespace normalshop
