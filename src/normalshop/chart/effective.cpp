@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
 
+#include "normalshop/core/distance.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
 
@@ -116,78 +116,6 @@ class StepFinder {
   RowSlopes below_;
 };
 
-/// Columns of a row are handled in segments of this many pixels; those without a step near cost
-/// nothing.
-constexpr int segment = 64;
-
-/// Squared distances along each row, for the segments that hold any below the limit.
-struct RowDistances {
-  Image<float> squared;
-  Image<std::uint8_t> used;  ///< per segment and row: `squared` is filled
-
-  RowDistances(const Image<std::uint8_t>& set, int limit)
-      : squared(set.width(), set.height()),
-        used((set.width() + segment - 1) / segment, set.height(), 0) {
-    for_rows(set.height(), [&](int y) { fill(set, limit, y); });
-  }
-
-  void fill(const Image<std::uint8_t>& set, int limit, int y) {
-    const int width = set.width();
-    const std::uint8_t* row = set.row(y);
-    std::uint8_t* active = used.row(y);
-    int last = -1;
-    for (int x = 0; x < width; ++x) {
-      const void* next = std::memchr(row + x, 1, static_cast<std::size_t>(width - x));
-      if (next == nullptr) break;
-      x = static_cast<int>(static_cast<const std::uint8_t*>(next) - row);
-      const int first = std::max(x - limit, std::max(last + 1, 0)) / segment;
-      for (int i = first; i <= std::min(x + limit, width - 1) / segment; ++i) active[i] = 1;
-      last = x;
-    }
-    if (last < 0) return;
-    for (int i = 0; i < used.width(); ++i) {
-      if (active[i] != 0) fill_segment(row, limit, width, i * segment, squared.row(y));
-    }
-  }
-
-  static void fill_segment(const std::uint8_t* row, int limit, int width, int begin, float* out) {
-    const int end = std::min(begin + segment, width);
-    int last = begin - limit;
-    for (int x = std::max(begin - limit, 0); x < begin; ++x) {
-      if (row[x] != 0) last = x;
-    }
-    for (int x = begin; x < end; ++x) {
-      if (row[x] != 0) last = x;
-      out[x] = static_cast<float>(std::min(x - last, limit));
-    }
-    last = end + limit;
-    for (int x = std::min(end + limit, width) - 1; x >= begin; --x) {
-      if (row[x] != 0) last = x;
-      if (x >= end) continue;
-      const float nearest = std::min(out[x], static_cast<float>(last - x));
-      out[x] = nearest * nearest;
-    }
-  }
-};
-
-/// The distances of row y; false, and nothing written, when all are the limit.
-bool segment_distances(const RowDistances& across, int y, int i, int limit, float* out) {
-  const int begin = i * segment;
-  const int count = std::min(segment, across.squared.width() - begin);
-  const auto cap = static_cast<float>(limit);
-  bool any = false;
-  for (int j = std::max(0, y - limit); j <= std::min(across.squared.height() - 1, y + limit); ++j) {
-    if (across.used(i, j) == 0) continue;
-    if (!any) std::fill_n(out, count, cap * cap);
-    any = true;
-    const float* in = across.squared.row(j) + begin;
-    const auto dy = static_cast<float>((y - j) * (y - j));
-    for (int x = 0; x < count; ++x) out[x] = std::min(out[x], in[x] + dy);
-  }
-  for (int x = 0; any && x < count; ++x) out[x] = std::sqrt(out[x]);
-  return any;
-}
-
 }  // namespace
 
 void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps) {
@@ -198,36 +126,24 @@ void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps) {
                });
 }
 
-void distance_to(const Image<std::uint8_t>& set, int limit, MaskImage& distance) {
-  const RowDistances across(set, limit);
-  distance.resize(set.width(), set.height());
-  for_rows(set.height(), [&](int y) {
-    for (int i = 0; i < across.used.width(); ++i) {
-      float* out = distance.row(y) + i * segment;
-      if (segment_distances(across, y, i, limit, out)) continue;
-      std::fill_n(out, std::min(segment, set.width() - i * segment), static_cast<float>(limit));
-    }
-  });
-}
-
 void compute_weight(EditingChart& chart, const EffectiveOptions& options) {
   const int width = chart.grid.width();
   Image<std::uint8_t> steps;
   find_depth_steps(chart, steps);
   const float falloff = std::max(2.0F, options.step_falloff / chart.grid.pixel);
   const int limit = static_cast<int>(std::ceil(falloff)) + 1;
-  const RowDistances across(steps, limit);
+  const DistanceRows across(steps, limit);
   chart.weight.resize(width, chart.grid.height());
   const float low = std::cos(options.zero_angle * degrees);
   const float high = std::cos(options.full_angle * degrees);
   for_rows(chart.grid.height(), [&](int y) {
-    for (int i = 0; i < across.used.width(); ++i) {
-      const int begin = i * segment;
-      const int count = std::min(segment, width - begin);
+    for (int i = 0; i < across.pieces(); ++i) {
+      const int begin = i * DistanceRows::piece;
+      const int count = std::min(DistanceRows::piece, width - begin);
       float* weight = chart.weight.row(y) + begin;
       const Vec3f* normals = chart.base_normal.row(y) + begin;
-      std::array<float, segment> distance;
-      const bool near = segment_distances(across, y, i, limit, distance.data());
+      std::array<float, DistanceRows::piece> distance;
+      const bool near = across.read(y, i, distance.data());
       for (int x = 0; x < count; ++x) weight[x] = smoothstep(low, high, normals[x].z());
       for (int x = 0; near && x < count; ++x) {
         weight[x] *= smoothstep(1.0F, falloff + 1.0F, distance[static_cast<std::size_t>(x)]);

@@ -20,8 +20,4 @@ void compute_weight(EditingChart& chart, const EffectiveOptions& options);
 /// above, relative to the pixel size and the slope of the base surface.
 void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps);
 
-/// Distance in pixels to the nearest pixel that is set, exact up to `limit`, else `limit`: the
-/// nearest in each row first, then the least over the rows within `limit`.
-void distance_to(const Image<std::uint8_t>& set, int limit, MaskImage& distance);
-
 }  // namespace normalshop
