@@ -242,6 +242,11 @@ Rect smooth(MaskView source, MaskView validity, MaskSpan target, Rect region,
   return smooth_any<float>(source, validity, target, region, options);
 }
 
+Rect smooth(ColorView source, MaskView validity, ColorSpan target, Rect region,
+            const SmoothOptions& options) {
+  return smooth_any<Vec3f>(source, validity, target, region, options);
+}
+
 int reach(const SmoothOptions& options) {
   return static_cast<int>(std::ceil(4.0 * static_cast<double>(options.sigma)));
 }

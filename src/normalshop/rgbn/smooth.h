@@ -30,6 +30,9 @@ Rect smooth(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
 /// The same for one number per pixel: masks, heights.
 Rect smooth(MaskView source, MaskView validity, MaskSpan target, Rect region,
             const SmoothOptions& options = {});
+/// The same for linear colours.
+Rect smooth(ColorView source, MaskView validity, ColorSpan target, Rect region,
+            const SmoothOptions& options = {});
 /// Pixels read beyond the region.
 int reach(const SmoothOptions& options);
 
