@@ -10,6 +10,7 @@
 
 #include "normalshop/chart/edit_sampler.h"
 #include "normalshop/chart/push_candidates.h"
+#include "normalshop/chart/texel_writes.h"
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 
@@ -30,17 +31,12 @@ struct Tally {
   }
 };
 
-/// A texel outside the plain owner pass and its new normal.
-struct Write {
-  std::uint32_t texel;
-  Vec3f normal;
-};
-
 constexpr int tile_size = NormalMap::tile_size;
 
-/// The texels of a batch, by lane.
-template <class T>
-using PerLane = std::array<T, TexelBatch::capacity>;
+struct Texel {
+  int x;
+  int y;
+};
 
 /// The push into one texture set.
 class SetPush {
@@ -78,18 +74,22 @@ class SetPush {
                   TexelBatch& batch) const;
   void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
   Tally edit_row(int y, Task& task);
-  std::vector<Write> gutter_writes() const;
-  std::vector<Write> shared_writes() const;
+  std::vector<TexelWrite> gutter_writes() const;
+  std::vector<TexelWrite> shared_writes() const;
   Vec3f own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                       const PushTriangle& source, float strength) const;
   void edit_gutter(const PerLane<const GutterTexel*>& items, Cache& triangles, TexelBatch& batch,
-                   std::vector<Write>& out) const;
+                   std::vector<TexelWrite>& out) const;
   void edit_shared(const PerLane<const SharedTexel*>& items, Cache& triangles, TexelBatch& batch,
-                   std::vector<Write>& out) const;
+                   std::vector<TexelWrite>& out) const;
   void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
                             TexelBatch& batch) const;
-  Tally write(const std::vector<Write>& writes);
+  Tally write(const std::vector<TexelWrite>& writes);
+  Texel texel(std::uint32_t index) const {
+    const int width = set_.normals.width();
+    return {static_cast<int>(index) % width, static_cast<int>(index) / width};
+  }
 
   const Mesh& mesh_;
   const EditSampler& sampler_;
@@ -200,37 +200,6 @@ Tally SetPush::push_tile(const Rect& tile, Task& task) {
   return tally;
 }
 
-/// What edit(items, triangles, batch, writes) writes for all wanted items, in their order, given
-/// batches of the points that add(item, triangles, batch) adds.
-template <class Item, class Wanted, class Add, class Edit>
-std::vector<Write> collect(const std::vector<Item>& items, const Mesh& mesh, const ChartGrid& grid,
-                           const Wanted& wanted, const Add& add, const Edit& edit) {
-  constexpr std::size_t run = 4096;
-  std::vector<std::vector<Write>> parts((items.size() + run - 1) / run);
-  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    TriangleCache<PushTriangle> triangles(mesh, grid);
-    TexelBatch batch;
-    PerLane<const Item*> lanes;
-    for (std::size_t part = begin; part < end; ++part) {
-      batch.count = 0;
-      const std::size_t last = std::min(items.size(), (part + 1) * run);
-      for (std::size_t i = part * run; i < last; ++i) {
-        if (wanted(items[i])) {
-          lanes[static_cast<std::size_t>(batch.count)] = &items[i];
-          add(items[i], triangles, batch);
-        }
-        if (batch.count == TexelBatch::capacity || (i + 1 == last && batch.count > 0)) {
-          edit(lanes, triangles, batch, parts[part]);
-          batch.count = 0;
-        }
-      }
-    }
-  });
-  std::vector<Write> all;
-  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 /// The texel's vector; codes without a direction count as the base normal.
 Vec3f SetPush::own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const {
   Vec3f stored = set_.normals.vector(x, y);
@@ -259,7 +228,7 @@ Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec
 }
 
 void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& triangles,
-                          TexelBatch& batch, std::vector<Write>& out) const {
+                          TexelBatch& batch, std::vector<TexelWrite>& out) const {
   if (!sampler_.read(batch)) return;
   for (int i = 0; i < batch.count; ++i) {
     if (!batch.acts(i)) continue;
@@ -270,8 +239,7 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
     const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
     const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, sampler_.grid().view);
     batch.set_frame(i, frame);
-    const int x = static_cast<int>(g.texel) % set_.normals.width();
-    const int y = static_cast<int>(g.texel) / set_.normals.width();
+    const auto [x, y] = texel(g.texel);
     const float strength = std::hypot(batch.change_x[k], batch.change_y[k]) + batch.covered[k];
     const Vec3f own = own_vector(x, y, batch.base.get(i), frame);
     batch.stored.set(i, gutter_vector(g, frame, own, source, strength));
@@ -285,14 +253,14 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
 
 /// A gutter texel takes the change of the surface point across the seam that it stands for, in the
 /// frame of the chart beside it, which decodes it.
-std::vector<Write> SetPush::gutter_writes() const {
-  return collect(
+std::vector<TexelWrite> SetPush::gutter_writes() const {
+  return collect_writes(
       set_.texels.gutter(), mesh_, sampler_.grid(),
       [&](const GutterTexel& g) { return candidates_.contains(g.source.triangle); },
       [&](const GutterTexel& g, Cache& triangles, TexelBatch& batch) {
         batch.add_point(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2});
       },
-      [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<Write>& out) {
+      [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
         edit_gutter(items, triangles, batch, out);
       });
 }
@@ -303,9 +271,7 @@ void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cac
   TexelBatch owners;
   PerLane<int> lanes;
   for (int i = 0; i < batch.count; ++i) {
-    const std::uint32_t texel = items[static_cast<std::size_t>(i)]->texel;
-    const int x = static_cast<int>(texel) % set_.normals.width();
-    const int y = static_cast<int>(texel) / set_.normals.width();
+    const auto [x, y] = texel(items[static_cast<std::size_t>(i)]->texel);
     const std::uint32_t owner = set_.texels.owner()(x, y);
     if (!batch.acts(i) || !candidates_.contains(owner)) continue;
     lanes[static_cast<std::size_t>(owners.count)] = i;
@@ -321,15 +287,15 @@ void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cac
 }
 
 void SetPush::edit_shared(const PerLane<const SharedTexel*>& items, Cache& triangles,
-                          TexelBatch& batch, std::vector<Write>& out) const {
+                          TexelBatch& batch, std::vector<TexelWrite>& out) const {
   if (!sampler_.read(batch)) return;
   drop_lanes_of_owners(items, triangles, batch);
   PerLane<std::uint32_t> ids{};
   for (int i = 0; i < batch.count; ++i) {
     const SharedTexel& s = *items[static_cast<std::size_t>(i)];
     ids[static_cast<std::size_t>(i)] = s.triangle;
-    batch.stored.set(i, set_.normals.vector(static_cast<int>(s.texel) % set_.normals.width(),
-                                            static_cast<int>(s.texel) / set_.normals.width()));
+    const auto [x, y] = texel(s.texel);
+    batch.stored.set(i, set_.normals.vector(x, y));
   }
   fill_frames(ids, batch);
   apply(sampler_.mode(), batch);
@@ -341,27 +307,25 @@ void SetPush::edit_shared(const PerLane<const SharedTexel*>& items, Cache& trian
 
 /// Texels that further triangles cover: where the owner's edit does nothing, the first of them that
 /// the edit reaches decides.
-std::vector<Write> SetPush::shared_writes() const {
-  return collect(
+std::vector<TexelWrite> SetPush::shared_writes() const {
+  return collect_writes(
       set_.texels.shared(), mesh_, sampler_.grid(),
       [&](const SharedTexel& s) { return candidates_.contains(s.triangle); },
       [&](const SharedTexel& s, Cache& triangles, TexelBatch& batch) {
-        const int x = static_cast<int>(s.texel) % set_.normals.width();
-        const int y = static_cast<int>(s.texel) / set_.normals.width();
+        const auto [x, y] = texel(s.texel);
         const SurfacePoint p = set_.texels.surface_point(s.triangle, x, y);
         batch.add_point(triangles.get(s.triangle), {1.0F, p.b1, p.b2});
       },
-      [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<Write>& out) {
+      [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
         edit_shared(items, triangles, batch, out);
       });
 }
 
-Tally SetPush::write(const std::vector<Write>& writes) {
+Tally SetPush::write(const std::vector<TexelWrite>& writes) {
   Tally tally;
   for (std::size_t i = 0; i < writes.size(); ++i) {
     if (i > 0 && writes[i].texel == writes[i - 1].texel) continue;
-    const int x = static_cast<int>(writes[i].texel) % set_.normals.width();
-    const int y = static_cast<int>(writes[i].texel) / set_.normals.width();
+    const auto [x, y] = texel(writes[i].texel);
     set_.normals.set_normal(x, y, writes[i].normal);
     ++tally.changed;
   }
@@ -370,8 +334,8 @@ Tally SetPush::write(const std::vector<Write>& writes) {
 
 Tally SetPush::run() {
   // Before any texel changes: the gutter reads normals across its seams.
-  const std::vector<Write> shared = shared_writes();
-  const std::vector<Write> gutter = gutter_writes();
+  const std::vector<TexelWrite> shared = shared_writes();
+  const std::vector<TexelWrite> gutter = gutter_writes();
   const std::vector<Rect> tiles = candidates_.tiles();
   Tally tally;
   std::mutex mutex;

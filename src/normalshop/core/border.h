@@ -7,9 +7,9 @@
 namespace normalshop {
 
 /// What an operator reads beyond an image.
-/// Clamp: the border pixel continues. Mirror: the height is mirrored at the outer edge of the border
-/// pixels, so the slope across the border changes its sign. Wrap: the image repeats; what tiles
-/// keeps tiling.
+/// Clamp: the border pixel continues. Mirror: the height is mirrored at the outer edge of the
+/// border pixels, so the slope across the border changes its sign. Wrap: the image repeats; what
+/// tiles keeps tiling.
 enum class Border { Clamp, Mirror, Wrap };
 constexpr auto names_of(Border) {
   return std::array<std::string_view, 3>{"clamp", "mirror", "wrap"};

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "normalshop/chart/texel_batch.h"
+#include "normalshop/core/parallel.h"
+
+/// Edits of texels listed one by one, private to floor 4.
+namespace normalshop {
+
+/// A listed texel and its new normal.
+struct TexelWrite {
+  std::uint32_t texel;  ///< y * width + x
+  Vec3f normal;
+};
+
+/// The texels of a batch, by lane.
+template <class T>
+using PerLane = std::array<T, TexelBatch::capacity>;
+
+/// What edit(items, triangles, batch, writes) writes for all wanted items, in their order, given
+/// batches of the points that add(item, triangles, batch) adds.
+template <class Item, class Wanted, class Add, class Edit>
+std::vector<TexelWrite> collect_writes(const std::vector<Item>& items, const Mesh& mesh,
+                                       const ChartGrid& grid, const Wanted& wanted, const Add& add,
+                                       const Edit& edit) {
+  constexpr std::size_t run = 4096;
+  std::vector<std::vector<TexelWrite>> parts((items.size() + run - 1) / run);
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    TriangleCache<PushTriangle> triangles(mesh, grid);
+    TexelBatch batch;
+    PerLane<const Item*> lanes;
+    for (std::size_t part = begin; part < end; ++part) {
+      batch.count = 0;
+      const std::size_t last = std::min(items.size(), (part + 1) * run);
+      for (std::size_t i = part * run; i < last; ++i) {
+        if (wanted(items[i])) {
+          lanes[static_cast<std::size_t>(batch.count)] = &items[i];
+          add(items[i], triangles, batch);
+        }
+        if (batch.count == TexelBatch::capacity || (i + 1 == last && batch.count > 0)) {
+          edit(lanes, triangles, batch, parts[part]);
+          batch.count = 0;
+        }
+      }
+    }
+  });
+  std::vector<TexelWrite> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace normalshop
