@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -12,18 +14,19 @@ TEST(Distance, MatchesBruteForce) {
   Random random(5);
   for (const int limit : {1, 3, 9, 40}) {
     Image<std::uint8_t> set(211, 93, 0);
+    std::vector<Vec2i> places;
     for (int i = 0; i < 25; ++i) {
-      set(static_cast<int>(random.uniform(0, 120)), static_cast<int>(random.uniform(0, 93))) = 1;
+      places.emplace_back(static_cast<int>(random.uniform(0, 120)),
+                          static_cast<int>(random.uniform(0, 93)));
+      set(places.back().x(), places.back().y()) = 1;
     }
     MaskImage distance;
     distance_to(set, limit, distance);
     for (int y = 0; y < set.height(); ++y) {
       for (int x = 0; x < set.width(); ++x) {
         float nearest = static_cast<float>(limit);
-        for (int j = 0; j < set.height(); ++j) {
-          for (int i = 0; i < set.width(); ++i) {
-            if (set(i, j) != 0) nearest = std::min(nearest, std::hypot(float(x - i), float(y - j)));
-          }
+        for (const Vec2i& p : places) {
+          nearest = std::min(nearest, std::hypot(float(x - p.x()), float(y - p.y())));
         }
         ASSERT_NEAR(distance(x, y), nearest, 1e-5F) << x << " " << y << " " << limit;
       }
