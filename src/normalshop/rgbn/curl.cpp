@@ -47,7 +47,7 @@ class Squares {
  private:
   Vec2d slope(int x, int y) const {
     const bool counts = validity_.empty() || validity_(x, y) > 0.0F;
-    const Vec2d s = slopes_(x, y).cast<double>();
+    Vec2d s = slopes_(x, y).cast<double>();
     if (counts && std::isfinite(s.x()) && std::isfinite(s.y())) return s;
     return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
