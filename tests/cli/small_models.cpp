@@ -1,5 +1,6 @@
 #include "cli/small_models.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,7 +22,8 @@ void set_code(RawImage& image, int x, int y, int channel, double from_0_to_1) {
 }
 
 void set_normal(RawImage& image, int x, int y, const Vec3d& normal) {
-  for (int c = 0; c < 3; ++c) set_code(image, x, y, c, 0.5 + 0.5 * normal[c]);
+  for (int c = 0; c < std::min(3, image.channels()); ++c)
+    set_code(image, x, y, c, 0.5 + 0.5 * normal[c]);
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ TEST(Gltf, TextureTransformIsAppliedToUvs) {
   material["normalTexture"]["scale"] = 0.5;
   material["normalTexture"]["extensions"]["KHR_texture_transform"] = {
       {"offset", {0.1, 0.2}}, {"scale", {2, 3}}, {"rotation", std::acos(0.0)}};
-  gltf.json["materials"] = {material};
+  gltf.json["materials"] = Json::array({material});
   const Model model = gltf.read();
   // (1, 1) is scaled to (2, 3), and rotated by a quarter against the clock (v runs down).
   EXPECT_NEAR(model.mesh.uvs[1].x(), 3.1F, 1e-5F);
@@ -185,7 +185,7 @@ TEST(Gltf, Ktx2IsSkippedForItsFallbackAndNamedWithout) {
   gltf.json["images"] = {{{"uri", "n.png"}}, {{"uri", "n.ktx2"}, {"mimeType", "image/ktx2"}}};
   gltf.json["textures"] = {
       {{"source", 0}, {"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}}};
-  gltf.json["materials"] = {textured("normalTexture", 0)};
+  gltf.json["materials"] = Json::array({textured("normalTexture", 0)});
   EXPECT_EQ(gltf.read().texture_sets[0].normal_map->path, "/none/n.png");
   gltf.json["textures"][0].erase("source");
   gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
@@ -203,7 +203,7 @@ TEST(Gltf, EmbeddedImagesComeAsBytes) {
   gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
   Json material = textured("normalTexture", 0);
   material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
-  gltf.json["materials"] = {material};
+  gltf.json["materials"] = Json::array({material});
   const TextureSet set = gltf.read().texture_sets[0];
   EXPECT_EQ(set.normal_map->bytes,
             (std::vector<std::byte>{std::byte{1}, std::byte{2}, std::byte{3}}));
@@ -368,7 +368,7 @@ TEST(GltfWriter, KeepsExtrasSamplersAndUvsOfTheOldTexture) {
   Json material = textured("normalTexture", 0);
   material["normalTexture"]["scale"] = 0.5;
   material["normalTexture"]["extensions"]["KHR_texture_transform"] = {{"offset", {0.5, 0.0}}};
-  gltf.json["materials"] = {material};
+  gltf.json["materials"] = Json::array({material});
   const Json out = written_json(gltf, folder, {"new.png", false});
   EXPECT_EQ(out["extras"].dump(), gltf.json["extras"].dump());
   const Json& info = out["materials"][0]["normalTexture"];
@@ -416,7 +416,7 @@ TEST(GltfWriter, NeverWritesOutsideItsFolder) {
   gltf.square()["material"] = 0;
   gltf.json["images"] = {{{"uri", "../shared.png"}}, {{"uri", "missing.png"}}};
   gltf.json["textures"] = {{{"source", 0}}};
-  gltf.json["materials"] = {textured("color", 0)};
+  gltf.json["materials"] = Json::array({textured("color", 0)});
   write_file(folder / "shared.png", std::string_view("pixels"));
   write_file(folder / "in/a.gltf", gltf.text());
   const WrittenModel written =
