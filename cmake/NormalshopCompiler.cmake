@@ -12,7 +12,9 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  # ccache asks for this leave before it keeps what was compiled with precompiled headers.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+                                  ${CCACHE_PROGRAM})
 endif()
 
 add_library(normalshop_compiler INTERFACE)
@@ -33,7 +35,27 @@ if(NORMALSHOP_BUILD_FUZZERS)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "The fuzzers need clang: cmake --preset sanitize")
   endif()
-  # Coverage in every target, so that the fuzzers see into the floors.
-  target_compile_options(normalshop_compiler INTERFACE -fsanitize=fuzzer-no-link)
   target_link_options(normalshop_compiler INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# The floors do the work. The programs and tests around them take longer to compile than to run, most
+# of all with sanitizers, so they are optimised less.
+foreach(kind floor program test)
+  add_library(normalshop_${kind}_compiler INTERFACE)
+  add_library(normalshop::${kind}_compiler ALIAS normalshop_${kind}_compiler)
+  target_link_libraries(normalshop_${kind}_compiler INTERFACE normalshop::compiler)
+endforeach()
+if(NORMALSHOP_BUILD_FUZZERS)
+  # Coverage, so that the fuzzers see into the floors.
+  target_compile_options(normalshop_floor_compiler INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+if(NORMALSHOP_SANITIZE)
+  target_compile_options(normalshop_program_compiler INTERFACE -O0)
+  target_compile_options(normalshop_test_compiler INTERFACE -O0)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    # Highway's emulated target takes two thirds of a kernel's compile time, and no machine runs it.
+    target_compile_definitions(normalshop_compiler INTERFACE HWY_BASELINE_TARGETS=HWY_SSSE3)
+  endif()
+else()
+  target_compile_options(normalshop_test_compiler INTERFACE $<$<CONFIG:Release>:-O1>)
 endif()

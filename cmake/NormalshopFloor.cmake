@@ -10,7 +10,8 @@ function(normalshop_floor name)
   target_link_libraries(
     normalshop_${name}
     PUBLIC ${FLOOR_FLOORS} Eigen3::Eigen
-    PRIVATE ${FLOOR_PRIVATE_LIBRARIES} normalshop::compiler)
+    PRIVATE ${FLOOR_PRIVATE_LIBRARIES} normalshop::floor_compiler)
+  normalshop_precompiled(normalshop_${name} floor)
 endfunction()
 
 # normalshop_test(NAME SOURCES ... LIBRARIES ...): one GoogleTest program for a folder of tests.
@@ -19,7 +20,8 @@ function(normalshop_test name)
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main normalshop::compiler)
+  target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main normalshop::test_compiler)
+  normalshop_precompiled(test_${name} test)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()
 
@@ -28,6 +30,7 @@ endfunction()
 function(normalshop_fuzzer name)
   cmake_parse_arguments(FUZZ "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(fuzz_${name} ${FUZZ_SOURCES})
-  target_link_libraries(fuzz_${name} PRIVATE ${FUZZ_LIBRARIES} normalshop::compiler)
+  target_link_libraries(fuzz_${name} PRIVATE ${FUZZ_LIBRARIES} normalshop::program_compiler)
+  normalshop_precompiled(fuzz_${name} program)
   target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
 endfunction()
