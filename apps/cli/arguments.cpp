@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <utility>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -40,7 +39,7 @@ Argument& Argument::between(int lowest, int highest) {
   return *this;
 }
 
-Argument& Argument::one_of(std::initializer_list<const char*> names) {
+Argument& Argument::one_of(const std::vector<std::string>& names) {
   option_->check(CLI::IsMember(names));
   return *this;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -30,7 +30,7 @@ class Argument {
   Argument& required();
   Argument& positive();
   Argument& between(int lowest, int highest);
-  Argument& one_of(std::initializer_list<const char*> names);
+  Argument& one_of(const std::vector<std::string>& names);
   /// The help shows the value that the variable has now.
   Argument& shows_default();
 

@@ -7,7 +7,6 @@
 
 #include "verbs.h"
 
-#include "normalshop/core/color_map.h"
 #include "normalshop/core/error.h"
 #include "normalshop/document/value.h"
 #include "normalshop/io/conventions.h"
@@ -61,15 +60,6 @@ Image<Vec3f> normals_of(RawImage codes, const NormalConvention& convention) {
   return normals;
 }
 
-MaskImage read_mask(const std::filesystem::path& path) {
-  const RawImage codes = read_image(path);
-  MaskImage mask(codes.width(), codes.height());
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) mask(x, y) = codes.code(x, y, 0);
-  }
-  return mask;
-}
-
 std::string size_text(const std::filesystem::path& path, int width, int height) {
   return path.string() + " has " + std::to_string(width) + " x " + std::to_string(height);
 }
@@ -77,12 +67,7 @@ std::string size_text(const std::filesystem::path& path, int width, int height) 
 void write_picture(const CompareFlags& flags, MaskView degrees, double scale) {
   ColorImage colors(degrees.width(), degrees.height());
   heatmap(degrees, static_cast<float>(scale), colors);
-  for (int y = 0; y < colors.height(); ++y) {
-    for (int x = 0; x < colors.width(); ++x) {
-      colors(x, y) = colors(x, y).unaryExpr([](float c) { return srgb_to_linear(c); });
-    }
-  }
-  write_png_srgb(flags.picture, colors);
+  write_png_codes(flags.picture, colors);
 }
 
 void run_compare(const CompareFlags& flags) {
@@ -133,7 +118,7 @@ void add_compare_verb(CommandLine& program) {
   CompareFlags& flags = verb.runs(run_compare);
   verb.takes("a", flags.a, "Normal map").required();
   verb.takes("b", flags.b, "Normal map of the same size and conventions").required();
-  verb.takes("--mask", flags.mask, "Image: only pixels whose first channel is not 0 count");
+  verb.takes("--mask", flags.mask, "Picture: only pixels that are not black count");
   verb.takes("-o,--output", flags.picture, "PNG picture of the angles in false colours");
   verb.takes("--max", flags.largest,
              "Angle in degrees of the brightest colour (the largest unless given)")

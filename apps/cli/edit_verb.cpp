@@ -1,7 +1,9 @@
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <string>
 
+#include "image_flags.h"
 #include "model_flags.h"
 #include "verbs.h"
 
@@ -16,6 +18,7 @@ namespace {
 
 struct EditFlags {
   ModelFlags model;
+  ImageFlags image;
   std::filesystem::path recipe;
   std::filesystem::path output;
   std::string preset;
@@ -26,44 +29,89 @@ struct EditFlags {
     ExportOptions out;
     ExportPreset chosen{};
     if (!preset.empty() && from_name(preset, chosen)) out.preset = chosen;
-    CodeType type{};
-    if (!bits.empty() && from_name(bits, type)) out.type = type;
+    out.type = code_type(bits);
     return out;
   }
 };
 
-void print_summary(const EditJob& job) {
-  for (std::size_t i = 0; i < job.edits.size(); ++i) {
-    const EditReport& e = job.edits[i];
+void print_summary(std::span<const Edit> log, std::span<const EditReport> reports,
+                   std::span<const std::filesystem::path> files) {
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const EditReport& e = reports[i];
     std::printf(
         "edit %zu (%s): %zu texels changed, largest change %.1f degrees, chart %d x %d, %.0f ms\n",
-        i, std::string(job.operators[i]).c_str(), e.pushed.changed,
+        i, std::string(log[i].operation->name()).c_str(), e.pushed.changed,
         static_cast<double>(e.pushed.largest_change), e.chart_width, e.chart_height,
         1e3 * (e.times.pull + e.times.operate + e.times.push));
   }
-  for (const auto& file : job.files) std::printf("wrote %s\n", file.string().c_str());
+  for (const auto& file : files) std::printf("wrote %s\n", file.string().c_str());
+}
+
+template <class Job>
+void print_job(const Job& job, const std::vector<std::string>& notes, bool json) {
+  print_notes(notes);
+  if (json) {
+    std::fputs(to_json(report_value(job)).c_str(), stdout);
+  } else {
+    print_summary(job.opened.document.log(), job.edits, job.files);
+  }
+}
+
+void check_no_model_flags(const OpenOptions& options) {
+  const auto refuse = [](bool given, const char* flag) {
+    if (given) throw WrongUse(flag, "is for models; --normals edits a picture");
+  };
+  refuse(!options.normal_maps.empty(), "--normal-map");
+  refuse(!options.albedos.empty(), "--albedo");
+  refuse(options.space.has_value(), "--space");
+  refuse(options.flip_v, "--flip-v");
+  refuse(options.size != 0, "--size");
+}
+
+ImageJob edit_image(const EditFlags& flags, const Recipe& recipe) {
+  const OpenOptions options = flags.model.options();
+  check_no_model_flags(options);
+  OpenImageOptions open = flags.image.open();
+  open.color = options.model;
+  open.green_down = options.green_down;
+  ImageExport target;
+  const ExportOptions chosen = flags.export_options();
+  if (chosen.preset == ExportPreset::Object) {
+    throw WrongUse("--preset", "a picture's normals are in tangent space: gltf, opengl or directx");
+  }
+  if (chosen.preset) target.green_down = chosen.preset == ExportPreset::DirectX;
+  target.type = chosen.type;
+  return run_image_job(open, recipe, flags.output, target);
 }
 
 void run_edit(const EditFlags& flags) {
+  const bool picture = !flags.image.files.normals.empty();
+  if (!picture && flags.model.options().model.empty()) {
+    throw WrongUse("a model is missing, or --normals for a picture");
+  }
   // The recipe first: a mistake in it should not cost the time of reading large maps.
   FileAssets assets(flags.recipe.parent_path());
   const Recipe recipe = parse_recipe(read_file(flags.recipe), flags.recipe.string(), assets);
-  const EditJob job =
-      run_edit_job(flags.model.options(), recipe, flags.output, flags.export_options());
-  print_notes(job.notes);
-  if (flags.json) {
-    std::fputs(to_json(report_value(job)).c_str(), stdout);
+  if (picture) {
+    const ImageJob job = edit_image(flags, recipe);
+    print_job(job, job.opened.notes, flags.json);
   } else {
-    print_summary(job);
+    const EditJob job =
+        run_edit_job(flags.model.options(), recipe, flags.output, flags.export_options());
+    print_job(job, job.notes, flags.json);
   }
 }
 
 }  // namespace
 
 void add_edit_verb(CommandLine& program) {
-  Verb verb = program.verb("edit", "Applies a recipe of edits to a model's normal maps");
+  Verb verb =
+      program.verb("edit", "Applies a recipe of edits to the normals of a model or a picture");
   EditFlags& flags = verb.runs(run_edit);
-  flags.model.add(verb);
+  flags.model.add(verb, "glTF, GLB or OBJ file; with --normals, the colours of a picture");
+  verb.takes("--normals", flags.image.files.normals,
+             "Edits a picture: the normal map that belongs to the colours");
+  flags.image.add(verb);
   verb.takes("--recipe", flags.recipe, "JSON file of edits (docs/recipes.md)").required();
   verb.takes("-o,--output", flags.output, "Folder for maps, model and report.json").required();
   verb.takes("--preset", flags.preset, "Conventions of the written maps (the input's unless given)")

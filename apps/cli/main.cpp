@@ -30,6 +30,9 @@ int run(int argc, char** argv) {
   add_info_verb(program);
   add_demo_verb(program);
   add_describe_verb(program);
+  add_operator_verbs(program);
+  add_segment_verb(program);
+  add_check_verb(program);
   try {
     program.run(argc, argv);
   } catch (const WrongUse& e) {

@@ -7,8 +7,8 @@
 
 namespace normalshop::cli {
 
-void ModelFlags::add(Verb& verb) {
-  verb.takes("model", options_.model, "glTF, GLB or OBJ file").required();
+Argument ModelFlags::add(Verb& verb, const std::string& help) {
+  const Argument model = verb.takes("model", options_.model, help);
   verb.takes("--normal-map", options_.normal_maps,
              "Normal map instead of the model's own: FILE, or SET=FILE with several sets");
   verb.takes("--albedo", options_.albedos, "Colour map, likewise");
@@ -18,6 +18,7 @@ void ModelFlags::add(Verb& verb) {
       .one_of({"up", "down"});
   verb.flag("--flip-v", options_.flip_v, "The model's V runs the other way than its format says");
   verb.takes("--size", options_.size, "Larger side of the normal map in texels").between(1, 16384);
+  return model;
 }
 
 OpenOptions ModelFlags::options() const {

@@ -12,7 +12,8 @@ namespace normalshop::cli {
 /// Flags of every verb that opens a model.
 class ModelFlags {
  public:
-  void add(Verb& verb);
+  /// Returns the model's place, which the verb may require.
+  Argument add(Verb& verb, const std::string& help = "glTF, GLB or OBJ file");
   OpenOptions options() const;
 
  private:

@@ -78,7 +78,7 @@ void run_render(const RenderFlags& flags) {
 void add_render_verb(CommandLine& program) {
   Verb verb = program.verb("render", "Draws a model with its normal maps");
   RenderFlags& flags = verb.runs(run_render);
-  flags.model.add(verb);
+  flags.model.add(verb).required();
   verb.takes("-o,--output", flags.output, "PNG file").required();
   verb.takes("--view", flags.view,
              "front, back, left, right, top, bottom or a direction x,y,z towards the viewer")

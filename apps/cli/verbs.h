@@ -2,7 +2,8 @@
 
 #include "arguments.h"
 
-/// One function a verb, each in its own file: adds its flags and what to run.
+/// One function a verb (or, for the operators', all of them), each in its own file: adds its flags
+/// and what to run.
 namespace normalshop::cli {
 
 void add_edit_verb(CommandLine& program);
@@ -10,6 +11,9 @@ void add_render_verb(CommandLine& program);
 void add_compare_verb(CommandLine& program);
 void add_info_verb(CommandLine& program);
 void add_demo_verb(CommandLine& program);
+void add_check_verb(CommandLine& program);
+void add_segment_verb(CommandLine& program);
 void add_describe_verb(CommandLine& program);
+void add_operator_verbs(CommandLine& program);
 
 }  // namespace normalshop::cli

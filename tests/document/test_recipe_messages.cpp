@@ -27,6 +27,12 @@ std::string pen(const std::string& options,
                          rest + "}");
 }
 
+std::string operator_names() {
+  std::vector<std::string_view> names;
+  for (const OperatorType& type : operator_types()) names.push_back(type.name);
+  return join_names(names);
+}
+
 const std::string good_pen = R"({"width": 1, "height": 1})";
 
 TEST(RecipeMessages, TheFrame) {
@@ -46,12 +52,9 @@ TEST(RecipeMessages, AnEdit) {
   EXPECT_EQ(message_of_edit("7"),
             "r.json: edits[0] must be an object with fields, not the number 7");
   EXPECT_EQ(message_of_edit(R"({"view": "front"})"),
-            "r.json: edits[0].operator is missing; it must be pen, stamp, text, combine, smooth or "
-            "sharpen");
-  EXPECT_EQ(
-      message_of_edit(R"({"operator": "paint", "view": "front"})"),
-      "r.json: edits[0].operator must be pen, stamp, text, combine, smooth or sharpen, not the "
-      "text \"paint\"");
+            "r.json: edits[0].operator is missing; it must be " + operator_names());
+  EXPECT_EQ(message_of_edit(R"({"operator": "carve", "view": "front"})"),
+            "r.json: edits[0].operator must be " + operator_names() + ", not the text \"carve\"");
   EXPECT_EQ(message_of_edit(R"({"operator": "smooth", "options": {"sigma": 1}})"),
             "r.json: edits[0].view is missing; it must be front, back, left, right, top or bottom, "
             "or an object with \"direction\" or \"facing\"");

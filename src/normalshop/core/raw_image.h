@@ -26,6 +26,10 @@ class RawImage {
   static int code_size(CodeType type) {
     return type == CodeType::U8 ? 1 : type == CodeType::U16 ? 2 : 4;
   }
+  /// The code that stands for 1.
+  static float full_code(CodeType type) {
+    return type == CodeType::U8 ? 255.0F : type == CodeType::U16 ? 65535.0F : 1.0F;
+  }
 
   int width() const { return width_; }
   int height() const { return bytes_.height(); }

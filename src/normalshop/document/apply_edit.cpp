@@ -8,6 +8,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/stopwatch.h"
+#include "normalshop/document/operate.h"
 #include "normalshop/document/surface_check.h"
 #include "normalshop/surface/seam_fit.h"
 
@@ -23,14 +24,6 @@ Extent view_extent(const View& view) {
           Vec2f(0.5F * view.width, 0.5F * view.height)};
 }
 
-Extent intersect(const Extent& a, const Extent& b) {
-  return {a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)};
-}
-
-Extent widened(const Extent& e, float by) {
-  return {e.low - Vec2f::Constant(by), e.high + Vec2f::Constant(by)};
-}
-
 /// A box in the view that holds the whole model.
 Extent model_extent(const Bounds& bounds, const View& view) {
   const Vec3f middle = view.to_chart(bounds.center() - view.center);
@@ -39,25 +32,15 @@ Extent model_extent(const Bounds& bounds, const View& view) {
   return {middle.head<2>() - reach, middle.head<2>() + reach};
 }
 
-std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const ChartGrid& grid) {
-  std::vector<Stroke> out;
-  for (const UnitStroke& stroke : strokes) {
-    Stroke pixels;
-    for (const UnitPoint& p : stroke) pixels.push_back({grid.to_pixel(p.position), p.pressure});
-    out.push_back(std::move(pixels));
-  }
-  return out;
-}
-
 /// The window that the edit needs. There is nothing to read or write beyond the model, so that a
 /// huge brush or sigma costs no more than the whole model does; and rather than let the pixels grow
 /// coarser than the texels, an edit reads less far.
-ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, const Extent& model,
-                      float pixel) {
+ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place, float pixel) {
+  const Extent& extent = place.extent;
   const Vec2f spare =
       0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
   const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach());
-  const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, model);
+  const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, place.model);
   const Extent window = widened(read, 4.0F * pixel);
   try {
     return make_grid(view, pixel, window.low, window.high);
@@ -94,18 +77,6 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
   });
   extend(source.validity, source.slopes);
   return source;
-}
-
-void scale(float factor, Rect region, SlopeSpan change, MaskSpan coverage) {
-  if (factor == 1.0F) return;
-  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        change(x, y) *= factor;
-        coverage(x, y) *= factor;
-      }
-    }
-  });
 }
 
 /// Rasterises, pulls what the operator needs and weighs.
@@ -162,28 +133,20 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   Stopwatch watch;
   const View view = resolve(edit.view, mesh);
   const Bounds box = bounds(mesh);
-  const Extent model = model_extent(box, view);
   check_near_view(edit, view);
-  Extent extent = edit.operation->extent(edit.strokes);
-  if (extent.empty()) extent = view_extent(view);
-  extent = intersect(extent, widened(model, 1e-3F * box.diagonal()));
-  if (extent.empty()) {
-    fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), model);
+  EditPlace place{view_extent(view), model_extent(box, view), edit.operation->extent(edit.strokes)};
+  if (place.extent.empty()) place.extent = place.view;
+  place.extent = intersect(place.extent, widened(place.model, 1e-3F * box.diagonal()));
+  if (place.extent.empty()) {
+    fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), place.model);
   }
-  const float texel = texel_pixel_size(mesh, storage, view, extent.low, extent.high);
-  EditingChart chart = build_chart(edit, mesh, storage,
-                                   choose_grid(edit, view, extent, model, texel), box.diagonal());
+  const float texel = texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high);
+  EditingChart chart =
+      build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
   report.times.pull = watch.lap();
 
-  OperatorInput input;
-  input.strokes = to_pixels(edit.strokes, chart.grid);
-  input.pixel = chart.grid.pixel;
-  input.view = pixel_rect(chart.grid, view_extent(view));
-  input.view_center = chart.grid.to_pixel({0.0F, 0.0F});
-  input.view_width = view.width / chart.grid.pixel;
-  input.model = pixel_rect(chart.grid, model);
-  input.region = intersect(grow(pixel_rect(chart.grid, extent), 2), chart.weight.rect());
-  check_on_surface(edit, input.strokes, chart, input.region, model);
+  OperatorInput input = make_input(edit, chart.grid, place);
+  check_on_surface(edit, input.strokes, chart, input.region, place.model);
   Source source;
   if (edit.operation->reads()) source = make_source(edit, chart);
   // Push needs neither.
@@ -191,19 +154,13 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   chart.normal = {};
   input.source = source.slopes;
   input.validity = source.validity;
-  SlopeImage change(chart.grid.width(), chart.grid.height(), Vec2f(0.0F, 0.0F));
-  MaskImage coverage(chart.grid.width(), chart.grid.height(), 0.0F);
-  const Rect region = edit.operation->run(input, change, coverage);
+  const OperatorResult result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
   source = {};
-  scale(edit.strength, region, change, coverage);
   report.times.operate = watch.lap();
 
-  ChartEdit result;
-  result.mode = edit.mode;
-  result.change = change;
-  if (edit.details == DetailsRule::Ignore) result.coverage = coverage;
-  result.region = region;
-  if (edit.strength > 0.0F) report.pushed = push_and_fit(mesh, seams, chart, result, storage);
+  ChartEdit change{edit.mode, result.change, {}, result.region};
+  if (edit.details == DetailsRule::Ignore) change.coverage = result.coverage;
+  if (edit.strength > 0.0F) report.pushed = push_and_fit(mesh, seams, chart, change, storage);
   report.times.push = watch.lap();
   report.chart_width = chart.grid.width();
   report.chart_height = chart.grid.height();

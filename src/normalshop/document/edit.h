@@ -57,6 +57,8 @@ struct Recipe {
 
 /// `assets` loads what the edits name. Throws InvalidInput naming the file and field.
 Recipe parse_recipe(std::string_view json, std::string_view file, Assets& assets);
+/// One edit of a recipe; `path` stands for it in messages.
+Edit read_edit(const Value& edit, const std::string& path, Assets& assets);
 Value to_value(const Recipe& recipe);
 
 }  // namespace normalshop

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "normalshop/core/border.h"
 #include "normalshop/document/assets.h"
 #include "normalshop/document/field_reader.h"
 #include "normalshop/rgbn/stroke.h"
@@ -33,9 +34,11 @@ struct OperatorInput {
   SlopeView source;   ///< before the edit (with details ignored: the base surface); extended past
                       ///< borders; empty unless the operator reads()
   MaskView validity;  ///< the weight of the effective chart: how far source counts; empty likewise
-  Rect region;        ///< where the result is wanted; the rest stays as it is
-  Rect view;          ///< the view's whole extent in pixels of this chart
-  Rect model;         ///< a box around the whole model, likewise
+  ColorView colors;   ///< linear; empty unless the operator reads_colors() and there are any
+  Border border = Border::Clamp;      ///< what source and colors do beyond their sides
+  Rect region;                        ///< where the result is wanted; the rest stays as it is
+  Rect view;                          ///< the view's whole extent in pixels of this chart
+  Rect model;                         ///< a box around the whole model, likewise
   Vec2f view_center = Vec2f::Zero();  ///< the middle of the view, between pixels too
   float view_width = 1.0F;            ///< in pixels, not rounded
   float pixel = 1.0F;                 ///< object units per pixel
@@ -66,6 +69,8 @@ class EditOperator {
   virtual StrokeUse stroke_use() const { return StrokeUse::Path; }
   /// Does it read the details under it?
   virtual bool reads() const = 0;
+  /// Does it read the colours too?
+  virtual bool reads_colors() const { return false; }
   /// Loads what the options name.
   virtual void load(Assets&) {}
   /// Where it may change something, to within two pixels; empty: the whole view.
@@ -74,6 +79,9 @@ class EditOperator {
   virtual float reach() const { return 0.0F; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.
   virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
+  /// An operator that moves colours along with normals writes what they become, and returns where.
+  /// Only pictures ask for it.
+  virtual Rect run_colors(const OperatorInput&, ColorSpan) const { return {}; }
 };
 
 /// An entry of the registry.

@@ -164,6 +164,10 @@ Value strokes_value(const std::vector<UnitStroke>& strokes) {
 
 }  // namespace
 
+Edit read_edit(const Value& edit, const std::string& path, Assets& assets) {
+  return read_edit(FieldReader(edit, path), assets);
+}
+
 Recipe parse_recipe(std::string_view json, std::string_view file, Assets& assets) {
   const Value root = parse_json(json, file);
   const FieldReader reader(root, std::string(file) + ": ");

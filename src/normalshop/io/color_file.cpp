@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -52,6 +53,25 @@ void decode_row(const RawImage& codes, int y, Vec3f* target, Decode decode) {
   }
 }
 
+template <class Encode>
+void write_png(const std::filesystem::path& path, ColorView image, const Encode& encode) {
+  RawImage codes(image.width(), image.height(), 3, CodeType::U8);
+  const auto rows = static_cast<std::size_t>(image.height());
+  parallel_for(rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      auto* target = codes.row<std::uint8_t>(y);
+      for (int x = 0; x < image.width(); ++x) {
+        for (int c = 0; c < 3; ++c) {
+          const float value = image(x, y)[c];
+          // The comparison's order sends NaN to 0.
+          *target++ = encode(value > 0.0F ? std::min(value, 1.0F) : 0.0F);
+        }
+      }
+    }
+  });
+  write_image(path, codes);
+}
+
 }  // namespace
 
 ColorImage color_from_codes(const RawImage& codes) {
@@ -80,24 +100,31 @@ ColorImage read_color(std::span<const std::byte> bytes, std::string_view name) {
   return color_from_codes(read_image(bytes, name));
 }
 
-void write_png_srgb(const std::filesystem::path& path, ColorView image) {
-  RawImage codes(image.width(), image.height(), 3, CodeType::U8);
-  const auto& table = encoding_table();
-  const auto code = [&](float linear) {
-    // The comparison's order sends NaN to 0.
-    const float clamped = linear > 0.0F ? std::min(linear, 1.0F) : 0.0F;
-    return table[static_cast<std::size_t>(clamped * 65535.0F + 0.5F)];
-  };
-  const auto rows = static_cast<std::size_t>(image.height());
-  parallel_for(rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      auto* target = codes.row<std::uint8_t>(y);
-      for (int x = 0; x < image.width(); ++x) {
-        for (int c = 0; c < 3; ++c) *target++ = code(image(x, y)[c]);
-      }
+MaskImage read_mask(const std::filesystem::path& path) {
+  const RawImage codes = read_image(path);
+  const int channels = codes.channels() >= 3 ? 3 : 1;
+  const float full = RawImage::full_code(codes.type()) * static_cast<float>(channels);
+  MaskImage mask(codes.width(), codes.height());
+  for (int y = 0; y < codes.height(); ++y) {
+    for (int x = 0; x < codes.width(); ++x) {
+      float sum = 0.0F;
+      for (int c = 0; c < channels; ++c) sum += codes.code(x, y, c);
+      mask(x, y) = sum > 0.0F ? std::min(sum / full, 1.0F) : 0.0F;  // NaN: 0
     }
+  }
+  return mask;
+}
+
+void write_png_srgb(const std::filesystem::path& path, ColorView image) {
+  const auto& table = encoding_table();
+  write_png(path, image, [&](float linear) {
+    return table[static_cast<std::size_t>(linear * 65535.0F + 0.5F)];
   });
-  write_image(path, codes);
+}
+
+void write_png_codes(const std::filesystem::path& path, ColorView image) {
+  write_png(path, image,
+            [](float code) { return static_cast<std::uint8_t>(code * 255.0F + 0.5F); });
 }
 
 }  // namespace normalshop

@@ -53,7 +53,6 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   const std::vector<float> before = seam_angles(document.mesh(), samples, maps);
   clock.start("edits");
   for (const Edit& edit : recipe.edits) {
-    job.operators.push_back(edit.operation->name());
     job.edits.push_back(document.apply(edit));
     if (job.edits.back().coarser_than_texels) {
       job.notes.push_back(edit.path +
@@ -72,23 +71,6 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
 
 Value mismatch_value(const SeamMismatch& m) {
   return Value::Object{{"mean", m.mean}, {"median", m.p50}, {"p99", m.p99}, {"largest", m.max}};
-}
-
-Value edits_value(const EditJob& job) {
-  Value::Array out;
-  for (std::size_t i = 0; i < job.edits.size(); ++i) {
-    const EditReport& e = job.edits[i];
-    out.push_back(Value::Object{{"operator", job.operators[i]},
-                                {"texels_changed", e.pushed.changed},
-                                {"largest_change_degrees", e.pushed.largest_change},
-                                {"chart", Value::Array{e.chart_width, e.chart_height}},
-                                {"pixel", e.pixel},
-                                {"coarser_than_texels", e.coarser_than_texels},
-                                {"seconds", Value::Object{{"pull", e.times.pull},
-                                                          {"operator", e.times.operate},
-                                                          {"push", e.times.push}}}});
-  }
-  return out;
 }
 
 Value sets_value(const EditJob& job) {
@@ -115,6 +97,23 @@ Value sets_value(const EditJob& job) {
 
 }  // namespace
 
+Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports) {
+  Value::Array out;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const EditReport& e = reports[i];
+    out.push_back(Value::Object{{"operator", log[i].operation->name()},
+                                {"texels_changed", e.pushed.changed},
+                                {"largest_change_degrees", e.pushed.largest_change},
+                                {"chart", Value::Array{e.chart_width, e.chart_height}},
+                                {"pixel", e.pixel},
+                                {"coarser_than_texels", e.coarser_than_texels},
+                                {"seconds", Value::Object{{"pull", e.times.pull},
+                                                          {"operator", e.times.operate},
+                                                          {"push", e.times.push}}}});
+  }
+  return out;
+}
+
 EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
                      const std::filesystem::path& folder, const ExportOptions& options) {
   // First, so that a folder that cannot be written costs no time.
@@ -127,7 +126,7 @@ EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
     clock.start(stage);
     return true;
   };
-  EditJob job{open_document(open, progress), {}, {}, {}, {}, {}, {}, {}, {}};
+  EditJob job{open_document(open, progress), {}, {}, {}, {}, {}, {}, {}};
   clock.stop();
   job.notes = job.opened.notes;
   apply_all(job, recipe, clock);
@@ -162,7 +161,7 @@ Value report_value(const EditJob& job) {
                               {"after_degrees", mismatch_value(job.seams_after)},
                               {"growth_degrees", mismatch_value(job.seams_growth)}}},
       {"texture_sets", sets_value(job)},
-      {"edits", edits_value(job)},
+      {"edits", edits_value(job.opened.document.log(), job.edits)},
       {"seconds", times},
       {"files", files},
       {"notes", notes}};

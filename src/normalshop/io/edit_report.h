@@ -1,7 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,6 @@ namespace normalshop {
 /// Everything that one run of `edit` did.
 struct EditJob {
   OpenedDocument opened;
-  std::vector<std::string_view> operators;
   std::vector<EditReport> edits;
   /// At the seams that the edits crossed: mismatch before, after, and its growth, in degrees.
   SeamMismatch seams_before;
@@ -29,6 +29,9 @@ struct EditJob {
 /// unless every edit succeeds. Throws IoError or InvalidInput.
 EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
                      const std::filesystem::path& folder, const ExportOptions& options);
+
+/// What each edit of a log did, for reports.
+Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports);
 
 /// The content of report.json.
 Value report_value(const EditJob& job);

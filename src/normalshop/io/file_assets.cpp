@@ -13,10 +13,6 @@ namespace {
 
 constexpr int largest_patch = 8192;
 
-float full_code(CodeType type) {
-  return type == CodeType::U8 ? 255.0F : type == CodeType::U16 ? 65535.0F : 1.0F;
-}
-
 }  // namespace
 
 Patch FileAssets::patch(const std::string& file) {
@@ -37,7 +33,7 @@ Patch FileAssets::patch(const std::string& file) {
   Patch patch;
   patch.slopes.resize(map.width(), map.height());
   if (alpha) patch.opacity.resize(map.width(), map.height());
-  const float opaque = full_code(map.codes().type());
+  const float opaque = RawImage::full_code(map.codes().type());
   for (int y = 0; y < map.height(); ++y) {
     for (int x = 0; x < map.width(); ++x) {
       const Vec3f n = map.normal(x, y);

@@ -41,7 +41,13 @@ ColorImage read_color(const std::filesystem::path& path);
 ColorImage read_color(std::span<const std::byte> bytes, std::string_view name);
 ColorImage color_from_codes(const RawImage& codes);
 
+/// A grey picture, or the mean of a coloured one's channels, as 0 (code 0 and NaN) to 1 (the
+/// largest code); alpha left out. Throws like read_image().
+MaskImage read_mask(const std::filesystem::path& path);
+
 /// 8-bit sRGB PNG of linear colours; values outside 0..1 are clamped.
 void write_png_srgb(const std::filesystem::path& path, ColorView image);
+/// The same of colours that are codes already.
+void write_png_codes(const std::filesystem::path& path, ColorView image);
 
 }  // namespace normalshop

@@ -6,6 +6,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/options.h"
 #include "normalshop/core/slope.h"
+#include "normalshop/io/detail/naming.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/surface/texel_density.h"
 
@@ -101,16 +102,6 @@ std::string said(const ConventionGuess& guess, const NormalConvention& conventio
   return "read as " + std::string(name_of(convention.space)) + " space, green " +
          (convention.green_down ? "down" : "up") + ", as the flags say; it looks like " +
          guess.sentence;
-}
-
-/// Says which file, where the error could not.
-template <class F>
-auto naming(const std::string& file, const F& job) {
-  try {
-    return job();
-  } catch (const InvalidInput& error) {
-    throw InvalidInput("'" + file + "': " + error.what());
-  }
 }
 
 NormalMap open_normals(const MapSource& source, const std::string& set_name,

@@ -123,6 +123,14 @@ Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, Mas
   return fill_inside({view_polygon(input.view, input.model, feather)}, feather, input.region, mask);
 }
 
+void subtract(SlopeView source, SlopeSpan target, Rect region) {
+  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
+    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
+      for (int x = region.x0; x < region.x1; ++x) target(x, y) -= source(x, y);
+    }
+  });
+}
+
 void keep_masked_change(SlopeView source, MaskView mask, SlopeSpan filtered_to_change,
                         Rect region) {
   parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {

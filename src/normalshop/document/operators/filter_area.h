@@ -57,6 +57,8 @@ Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStrok
 /// The edit's strength per pixel, 0 to 1 (lengths in pixels). Returns where it is not 0.
 Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, MaskSpan mask);
 
+/// target -= source in `region`.
+void subtract(SlopeView source, SlopeSpan target, Rect region);
 /// change = mask * (filtered - source) in `region`.
 void keep_masked_change(SlopeView source, MaskView mask, SlopeSpan filtered_to_change, Rect region);
 

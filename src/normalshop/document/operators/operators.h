@@ -11,5 +11,10 @@ OperatorType text_operator();
 OperatorType combine_operator();
 OperatorType smooth_operator();
 OperatorType sharpen_operator();
+OperatorType flatten_operator();
+OperatorType paint_operator();
+OperatorType rotate_operator();
+OperatorType balance_operator();
+OperatorType project_operator();
 
 }  // namespace normalshop

@@ -1,0 +1,64 @@
+#include "normalshop/document/operate.h"
+
+#include "normalshop/core/parallel.h"
+#include "normalshop/document/surface_check.h"
+
+namespace normalshop {
+
+namespace {
+
+std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const ChartGrid& grid) {
+  std::vector<Stroke> out;
+  for (const UnitStroke& stroke : strokes) {
+    Stroke pixels;
+    for (const UnitPoint& p : stroke) pixels.push_back({grid.to_pixel(p.position), p.pressure});
+    out.push_back(std::move(pixels));
+  }
+  return out;
+}
+
+void scale(float factor, OperatorResult& result) {
+  if (factor == 1.0F) return;
+  const Rect& region = result.region;
+  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
+    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
+      for (int x = region.x0; x < region.x1; ++x) {
+        result.change(x, y) *= factor;
+        result.coverage(x, y) *= factor;
+      }
+    }
+  });
+}
+
+}  // namespace
+
+Extent intersect(const Extent& a, const Extent& b) {
+  return {a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)};
+}
+
+Extent widened(const Extent& extent, float by) {
+  return {extent.low - Vec2f::Constant(by), extent.high + Vec2f::Constant(by)};
+}
+
+OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlace& place) {
+  OperatorInput input;
+  input.strokes = to_pixels(edit.strokes, grid);
+  input.pixel = grid.pixel;
+  input.view = pixel_rect(grid, place.view);
+  input.view_center = grid.to_pixel(0.5F * (place.view.low + place.view.high));
+  input.view_width = (place.view.high.x() - place.view.low.x()) / grid.pixel;
+  input.model = pixel_rect(grid, place.model);
+  input.region =
+      intersect(grow(pixel_rect(grid, place.extent), 2), Rect{0, 0, grid.width(), grid.height()});
+  return input;
+}
+
+OperatorResult run_operator(const Edit& edit, const OperatorInput& input, int width, int height) {
+  OperatorResult result{
+      SlopeImage(width, height, Vec2f(0.0F, 0.0F)), MaskImage(width, height, 0.0F), {}};
+  result.region = edit.operation->run(input, result.change, result.coverage);
+  scale(edit.strength, result);
+  return result;
+}
+
+}  // namespace normalshop

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "normalshop/chart/grid.h"
+#include "normalshop/document/edit.h"
+
+/// The part of an edit that a mesh's editing chart and a picture share.
+namespace normalshop {
+
+/// Where an edit looks, in object units from the view's centre, y up.
+struct EditPlace {
+  Extent view;    ///< its whole extent
+  Extent model;   ///< a box around the whole model
+  Extent extent;  ///< where the edit may change something
+};
+
+Extent intersect(const Extent& a, const Extent& b);
+Extent widened(const Extent& extent, float by);
+
+/// All of the input but the images.
+OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlace& place);
+
+/// What an operator made of a chart, `strength` included. Both images have the chart's size.
+struct OperatorResult {
+  SlopeImage change;
+  MaskImage coverage;
+  Rect region;  ///< both are 0 outside
+};
+OperatorResult run_operator(const Edit& edit, const OperatorInput& input, int width, int height);
+
+}  // namespace normalshop
