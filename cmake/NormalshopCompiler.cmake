@@ -21,6 +21,7 @@ add_library(normalshop_compiler INTERFACE)
 add_library(normalshop::compiler ALIAS normalshop_compiler)
 target_compile_options(
   normalshop_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+                                -Wzero-as-null-pointer-constant
                                 -Werror -ffp-contract=off -fno-math-errno
                                 # GCC 12 sees overlaps in std::string's operator+ (GCC bug 105651).
                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
