@@ -28,7 +28,6 @@ struct OperatorFlags {
   bool json = false;
 };
 
-/// Commas in names of flags would end them; options are written like those of every program.
 std::string flag_of(const Value& field) { return "--" + *field.find("name")->text(); }
 
 bool read_number(std::string_view text, double& number) {
@@ -93,24 +92,32 @@ Value edit_value(const OperatorFlags& flags) {
   return edit;
 }
 
-/// The fields of the edit by the names of their flags: "smooth.options.sigma" is "smooth --sigma".
-std::string with_flags(std::string message, const std::string& verb) {
+/// The fields of the edit by the names of their flags: "edit.options.sigma" is "--sigma".
+std::string with_flags(std::string message) {
   const auto replace = [&](const std::string& field, const std::string& flag) {
-    if (message.starts_with(verb + field)) message.replace(verb.size(), field.size(), flag);
+    if (message.starts_with(field)) message.replace(0, field.size(), flag);
   };
-  replace(".options.", " --");
-  replace(".strokes", " --stroke");
-  replace(".strength", " --strength");
+  replace("edit.options.", "--");
+  replace("edit.options: ", "");
+  replace("edit.strokes", "--stroke");
+  replace("edit.strength", "--strength");
   return message;
 }
 
 Recipe read_recipe(const OperatorFlags& flags) {
-  const std::string verb(flags.type->name);
   FileAssets assets({});
   try {
-    return {{read_edit(edit_value(flags), verb, assets)}};
+    return {{read_edit(edit_value(flags), "edit", assets)}};
   } catch (const InvalidInput& error) {
-    throw WrongUse(with_flags(error.what(), verb));
+    throw WrongUse(with_flags(error.what()));
+  }
+}
+
+ImageJob run(const OperatorFlags& flags, const Recipe& recipe, const ImageExport& output) {
+  try {
+    return run_image_job(flags.image.open(), recipe, output);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(with_flags(error.what()));
   }
 }
 
@@ -118,7 +125,7 @@ void run_operator_verb(const OperatorFlags& flags) {
   const Recipe recipe = read_recipe(flags);
   ImageExport output = flags.output;
   output.type = code_type(flags.image.bits);
-  const ImageJob job = run_image_job(flags.image.open(), recipe, output);
+  const ImageJob job = run(flags, recipe, output);
   for (const std::string& note : job.opened.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   if (flags.json) {
     std::fputs(to_json(report_value(job)).c_str(), stdout);

@@ -15,7 +15,8 @@ std::string failure(Document& d, const std::string& fields) {
 }
 
 const std::string off_plane =
-    " lies off the surface that the view shows; points are in object units from the view's centre, "
+    " lies off the surface that the view shows; points are in object units (in a picture: pixels) "
+    "from the view's centre, "
     "x "
     "right and y up, and the model spans x -0.5 to 0.5, y -0.5 to 0.5";
 

@@ -122,8 +122,9 @@ bool copy_meets(const EditingChart& chart, const EditOperator& operation, const 
 
 void fail_off_surface(const std::string& field, const Extent& model) {
   throw InvalidInput(field +
-                     " lies off the surface that the view shows; points are in object units from "
-                     "the view's centre, x right and y up, and the model spans x " +
+                     " lies off the surface that the view shows; points are in object units (in a "
+                     "picture: pixels) from the view's centre, x right and y up, and the model "
+                     "spans x " +
                      number_text(model.low.x()) + " to " + number_text(model.high.x()) + ", y " +
                      number_text(model.low.y()) + " to " + number_text(model.high.y()));
 }

@@ -1,0 +1,179 @@
+#include <cstring>
+
+#include "../io/temp_folder.h"
+#include "cli/run_program.h"
+#include "cli/small_models.h"
+#include <gtest/gtest.h>
+
+#include "normalshop/document/edit_operator.h"
+#include "normalshop/io/atomic_file.h"
+#include "normalshop/io/image_file.h"
+
+/// The verbs that work on a picture with normals.
+namespace normalshop::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool same_codes(const RawImage& a, const RawImage& b) {
+  return a.width() == b.width() && a.channels() == b.channels() && a.type() == b.type() &&
+         a.size_bytes() == b.size_bytes() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+class Pictures : public ::testing::Test {
+ protected:
+  Pictures() {
+    write_image(folder_ / "normal.png", wavy_map(size, 3, CodeType::U8));
+    write_image(folder_ / "color.png", wavy_map(size, 4, CodeType::U8));
+    write_image(folder_ / "small.png", wavy_map(8, 3, CodeType::U8));
+    write_file(folder_ / "recipe.json", R"({"version": 1, "edits": [
+        {"operator": "pen", "view": "front", "options": {"width": 10, "height": 3},
+         "strokes": [[[-20, 0], [20, 6]]]}]})");
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  RawImage image(const std::string& name) const { return read_image(folder_ / name); }
+  ProgramRun good(const Arguments& arguments) const {
+    const ProgramRun run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 0) << command_line(arguments) << "\n" << run.err;
+    return run;
+  }
+  /// The run fails with this code and one line that holds all of `names`, and writes nothing.
+  void bad(const Arguments& arguments, int code, const std::vector<std::string>& names) const {
+    const std::size_t before = files_in(folder_.path());
+    const ProgramRun run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, code) << command_line(arguments);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    for (const std::string& name : names) {
+      EXPECT_NE(run.err.find(name), std::string::npos) << "no " << name << " in: " << run.err;
+    }
+    EXPECT_EQ(files_in(folder_.path()), before) << command_line(arguments);
+  }
+
+  static constexpr int size = 64;
+  TempFolder folder_;
+};
+
+TEST_F(Pictures, ARecipeEditsAPair) {
+  good({"edit", path("color.png"), "--normals", path("normal.png"), "--recipe", path("recipe.json"),
+        "-o", path("out")});
+  const RawImage before = image("normal.png");
+  const RawImage after = image("out/normal.png");
+  ASSERT_EQ(after.size_bytes(), before.size_bytes());
+  int changed = 0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      bool same = true;
+      for (int c = 0; c < 3; ++c) same = same && after.code(x, y, c) == before.code(x, y, c);
+      if (same) continue;
+      ++changed;
+      EXPECT_LT(std::abs(y - size / 2), 12) << x << " " << y;
+    }
+  }
+  EXPECT_GT(changed, 200);
+  EXPECT_TRUE(same_codes(image("color.png"), image("out/color.png")));
+  const Value report = parse_json(read_file(folder_ / "out/report.json"), "report");
+  EXPECT_GE(*report.find("texels_changed")->number(), changed);  // some round to the same code
+  EXPECT_EQ(report.find("files")->array()->size(), 3U);
+}
+
+TEST_F(Pictures, AVerbIsARecipeOfOneEdit) {
+  good({"edit", "--normals", path("normal.png"), "--recipe", path("recipe.json"), "-o",
+        path("out")});
+  const ProgramRun run = good({"pen", path("normal.png"), "--width", "10", "--height", "3",
+                               "--stroke", "-20,0 20,6", "-o", path("verb.png"), "--json"});
+  EXPECT_TRUE(same_codes(image("out/normal.png"), image("verb.png")));
+  EXPECT_GT(*parse_json(run.out, "report").find("largest_change_degrees")->number(), 5.0);
+}
+
+TEST_F(Pictures, EveryOperatorIsAVerbWithItsOptions) {
+  for (const OperatorType& type : operator_types()) {
+    const std::string help = good({std::string(type.name), "--help"}).out;
+    for (const Value& field : type.fields()) {
+      EXPECT_NE(help.find("--" + *field.find("name")->text() + " "), std::string::npos)
+          << type.name << " " << *field.find("name")->text();
+    }
+  }
+}
+
+TEST_F(Pictures, BitsAndGreenOfTheOutput) {
+  good({"edit", "--normals", path("normal.png"), "--recipe", path("recipe.json"), "-o", path("out"),
+        "--preset", "directx", "--bits", "16"});
+  EXPECT_EQ(image("out/normal.png").type(), CodeType::U16);
+  const double up = image("normal.png").code(3, 3, 1) / 255.0;
+  EXPECT_NEAR(image("out/normal.png").code(3, 3, 1) / 65535.0, 1.0 - up, 1e-2);
+}
+
+TEST_F(Pictures, CheckAndProject) {
+  const ProgramRun checked = good({"check", path("normal.png"), "--json", "-o", path("curl.png")});
+  const Value report = parse_json(checked.out, "check");
+  EXPECT_EQ(*report.find("pixels")->number(), size * size);
+  EXPECT_EQ(*report.find("without_direction")->number(), 0.0);
+  EXPECT_EQ(image("curl.png").width(), size);
+  good({"project", path("normal.png"), "-o", path("flat.tif"), "--bits", "32"});
+  const ProgramRun again = good({"check", path("flat.tif"), "--json"});
+  EXPECT_LT(*parse_json(again.out, "check").find("curl_share")->number(), 1e-6);
+}
+
+TEST_F(Pictures, SegmentsAreLabelsPicturesAndMasks) {
+  RawImage halves(size, size, 3, CodeType::U8);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      auto* p = halves.row<std::uint8_t>(y) + 3 * x;
+      p[0] = x < size / 2 ? 128 : 218;
+      p[1] = 128;
+      p[2] = x < size / 2 ? 255 : 218;
+    }
+  }
+  write_image(folder_ / "halves.png", halves);
+  const ProgramRun run =
+      good({"segment", path("halves.png"), "--sigma", "0", "-o", path("labels.png"), "--picture",
+            path("picture.png"), "--select", "20,0", "--mask-output", path("mask.png"), "--json"});
+  EXPECT_EQ(*parse_json(run.out, "segment").find("segments")->number(), 2.0);
+  EXPECT_EQ(image("labels.png").code(3, 3, 0), 1.0F);
+  EXPECT_EQ(image("labels.png").code(size - 3, 3, 0), 2.0F);
+  EXPECT_EQ(image("mask.png").code(3, 3, 0), 0.0F);
+  EXPECT_EQ(image("mask.png").code(size - 3, 3, 0), 255.0F);
+  // The mask is one for edits.
+  good({"flatten", path("halves.png"), "--mask", path("mask.png"), "-o", path("flat.png")});
+  EXPECT_EQ(image("flat.png").code(3, 3, 0), 128.0F);
+  EXPECT_NEAR(image("flat.png").code(size - 3, 3, 0), 127.5F, 1.0F);
+}
+
+TEST_F(Pictures, WrongUseIsOneSentence) {
+  const std::string normal = path("normal.png");
+  bad({"smooth", normal, "--sigma", "wide", "-o", path("o.png")}, 2,
+      {"smooth: --sigma must be a number from 0", "wide"});
+  bad({"pen", normal, "--width", "3", "--height", "1", "--stroke", "1;2", "-o", path("o.png")}, 2,
+      {"--stroke", "x,y", "1;2"});
+  bad({"pen", normal, "--width", "3", "--height", "1", "-o", path("o.png")}, 2,
+      {"--stroke must have at least one"});
+  bad({"stamp", normal, "--patch", path("none.png"), "--size", "9", "--stroke", "0,0", "-o",
+       path("o.png")},
+      2, {"none.png"});
+  bad({"edit", "--recipe", path("recipe.json"), "-o", path("out")}, 2, {"--normals"});
+  bad({"edit", path("color.png"), "--normals", normal, "--size", "64", "--recipe",
+       path("recipe.json"), "-o", path("out")},
+      2, {"--size", "models"});
+  bad({"segment", normal}, 1, {"nothing would be written"});
+}
+
+TEST_F(Pictures, BadInputIsOneSentenceAndWritesNothing) {
+  const std::string normal = path("normal.png");
+  bad({"smooth", normal, "--sigma", "2", "-o", normal}, 1, {"normal.png", "input"});
+  bad({"smooth", path("none.png"), "--sigma", "2", "-o", path("o.png")}, 1, {"none.png"});
+  bad({"smooth", normal, "--color", path("small.png"), "--sigma", "2", "-o", path("o.png")}, 1,
+      {"colours", "64 x 64", "8 x 8"});
+  bad({"smooth", normal, "--mask", path("small.png"), "--sigma", "2", "-o", path("o.png")}, 1,
+      {"mask", "64 x 64", "8 x 8"});
+  bad({"pen", normal, "--width", "3", "--height", "1", "--stroke", "90,0 95,0", "-o",
+       path("o.png")},
+      1, {"--stroke lies off", "pixels", "-32 to 32"});
+  bad({"smooth", normal, "--sigma", "2", "-o", path("o.xyz")}, 1, {"o.xyz"});
+  bad({"segment", normal, "--select", "40,0", "--mask-output", path("m.png")}, 1, {"40,0", "32"});
+  bad({"edit", "--normals", normal, "--recipe", path("recipe.json"), "-o", folder_.path().string()},
+      1, {"input"});
+}
+
+}  // namespace
+}  // namespace normalshop::test
