@@ -205,7 +205,9 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
   const Segment& s = *near.segment;
   const bool at_start = near.along <= 0.0F;
   const bool at_end = near.along >= s.length;
-  if ((at_start && s.start_cap) || (at_end && s.end_cap)) return cap(near);
+  if ((at_start && s.start_cap) || (at_end && s.end_cap)) {
+    return pattern_ ? FieldSample() : cap(near);
+  }
   const Along v = along(p, near);
   const float half_width = v.half_width();
   if (!(distance < half_width) || half_width < 1e-6F) return level(p, shape);
@@ -218,12 +220,19 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
     side = distance < on_line ? side * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
   }
   const float u = side * distance / half_width;
+  if (pattern_) return patterned(shape, u, side * away, v);
   const Profile::Value h = profile_.at(u, jump_share(half_width));
   const float amplitude = height_ * v.fade();
   const float along_rate = height_ * v.segment->fade_rate * h.height -
                            amplitude * h.slope * u * v.segment->half_width_rate / half_width;
   const Vec2f gradient = amplitude * h.slope / half_width * side * away + along_rate * v.gradient;
   return {amplitude * h.height, {gradient.x(), -gradient.y()}, coverage(u, v.fade())};
+}
+
+FieldSample PolylineField::patterned(const Shape& shape, float u, const Vec2f& away,
+                                     const Along& along) const {
+  return pattern_({u, along.segment->start + along.at, shape.length, along.half_width(),
+                   along.segment->half_width_rate, away, along.gradient});
 }
 
 /// Round end of an open line: the odd part of the profile turns over smoothly from one side to the

@@ -23,6 +23,11 @@ PolylineField::PolylineField(const std::vector<FieldShape>& shapes, const Profil
   for (const FieldShape& shape : shapes) add(shape);
 }
 
+PolylineField::PolylineField(const std::vector<FieldShape>& shapes, FieldPattern pattern)
+    : PolylineField(shapes, Profile({}), 1.0F, FieldCoverage::Band) {
+  pattern_ = std::move(pattern);
+}
+
 void PolylineField::add(const FieldShape& source) {
   const std::size_t first = segments_.size();
   shapes_.emplace_back();
@@ -76,6 +81,7 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
   const bool ring = closed && v.size() > 1;
   const std::size_t count = ring ? v.size() : std::max<std::size_t>(1, v.size() - 1);
   const std::size_t first = segments_.size();
+  float& along = shapes_.back().length;
   for (std::size_t i = 0; i < count; ++i) {
     const FieldVertex& a = v[i];
     const FieldVertex& b = v[(i + 1) % v.size()];
@@ -84,6 +90,8 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     s.b = b.position;
     s.length = (b.position - a.position).norm();
     s.direction = s.length > 0.0F ? Vec2f((b.position - a.position) / s.length) : Vec2f(1.0F, 0.0F);
+    s.start = along;
+    along += s.length;
     s.half_width = a.half_width;
     s.fade = a.fade;
     if (s.length > 0.0F) {

@@ -6,6 +6,7 @@
 namespace normalshop {
 
 OperatorType pen_operator();
+OperatorType trim_operator();
 OperatorType stamp_operator();
 OperatorType text_operator();
 OperatorType combine_operator();

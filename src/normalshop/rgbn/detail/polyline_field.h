@@ -32,10 +32,25 @@ struct FieldSample {
 
 enum class FieldCoverage { Band, Inside };
 
+/// Where a point lies beside a line: the coordinates (u, v) of thesis 2.4.1 and their gradients.
+struct FieldPlace {
+  float u;              ///< signed distance / half width, positive to the left or inside
+  float v;              ///< arc length from the line's start
+  float length;         ///< of the whole line
+  float half_width;     ///< here
+  float width_change;   ///< of the half width along v
+  Vec2f grad_distance;  ///< of the signed distance; y down, as that of v
+  Vec2f grad_v;
+};
+/// What a pattern makes of a place; the sample's height says which of several lines counts.
+using FieldPattern = std::function<FieldSample(const FieldPlace&)>;
+
 class PolylineField {
  public:
   PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile, float height,
                 FieldCoverage coverage);
+  /// A pattern along lines with cut ends, instead of a profile.
+  PolylineField(const std::vector<FieldShape>& shapes, FieldPattern pattern);
   PolylineField(const PolylineField&) = delete;
   PolylineField& operator=(const PolylineField&) = delete;
 
@@ -60,6 +75,7 @@ class PolylineField {
     Vec2f a, b;
     Vec2f direction;
     float length;
+    float start;  ///< arc length of a
     float half_width, half_width_rate;
     float fade, fade_rate;
     Vec2f start_tangent, end_tangent;  ///< mean direction at the joints
@@ -72,6 +88,7 @@ class PolylineField {
 
   struct Shape {
     bool closed = false;
+    float length = 0.0F;
     float largest_half_width = 0.0F;
     float orientation = 1.0F;  ///< 1: inside is to the left
     float top = 0.0F;
@@ -95,12 +112,14 @@ class PolylineField {
   FieldSample sample(const Vec2f& p, const List& segments) const;
   FieldSample beside(const Vec2f& p, const Shape& shape, const Nearest& nearest) const;
   FieldSample cap(const Nearest& nearest) const;
+  FieldSample patterned(const Shape& shape, float u, const Vec2f& away, const Along& along) const;
   static Along along(const Vec2f& p, const Nearest& nearest);
   FieldSample level(const Vec2f& p, const Shape& shape) const;
   float coverage(float u, float fade) const;
   bool inside(const Vec2f& p, const Shape& shape) const;
 
   Profile profile_;
+  FieldPattern pattern_;
   float height_;
   FieldCoverage coverage_;
   std::vector<Segment> segments_;
