@@ -71,6 +71,9 @@ class EditOperator {
   virtual bool reads() const = 0;
   /// Does it read the colours too?
   virtual bool reads_colors() const { return false; }
+  /// In a picture that is a tile: does it find the other side by input.border alone? Others get
+  /// their strokes repeated beyond the sides.
+  virtual bool repeats_itself() const { return false; }
   /// Loads what the options name.
   virtual void load(Assets&) {}
   /// Where it may change something, to within two pixels; empty: the whole view.

@@ -114,10 +114,14 @@ Placed place(const Edit& edit, const ImageDocument::Images& images) {
   }
   out.place.view = moved({-half_view, half_view}, -origin);
   out.place.model = moved(out.picture, -origin);
-  if (images.border == Border::Wrap) repeat_strokes(out.edit, out.place.model);
+  if (images.border == Border::Wrap && !edit.operation->repeats_itself())
+    repeat_strokes(out.edit, out.place.model);
   out.place.extent = edit.operation->extent(out.edit.strokes);
   if (out.place.extent.empty()) out.place.extent = out.place.view;
-  out.place.extent = intersect(out.place.extent, out.place.model);
+  const bool wraps = images.border == Border::Wrap && edit.operation->repeats_itself();
+  const Extent inside = intersect(out.place.extent, out.place.model);
+  const bool leaves = inside.low != out.place.extent.low || inside.high != out.place.extent.high;
+  out.place.extent = wraps && leaves ? out.place.model : inside;
   if (out.place.extent.empty()) {
     fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), out.picture);
   }
@@ -271,7 +275,9 @@ EditReport ImageDocument::apply(const Edit& edit) {
     input.source = pulled.slopes;
     input.validity = weight;
   }
-  input.border = images_.border;
+  // Within a part of the picture the other side is not there, and out of reach.
+  if (placed.window == Rect{0, 0, images_.normals.width(), images_.normals.height()})
+    input.border = images_.border;
   if (edit.operation->reads_colors()) input.colors = part_of(images_.colors, placed.window);
   report.times.pull = watch.lap();
   const OperatorResult result =

@@ -1,5 +1,6 @@
 #include "normalshop/document/operate.h"
 
+#include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/document/surface_check.h"
 
@@ -56,7 +57,11 @@ OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlac
 OperatorResult run_operator(const Edit& edit, const OperatorInput& input, int width, int height) {
   OperatorResult result{
       SlopeImage(width, height, Vec2f(0.0F, 0.0F)), MaskImage(width, height, 0.0F), {}};
-  result.region = edit.operation->run(input, result.change, result.coverage);
+  try {
+    result.region = edit.operation->run(input, result.change, result.coverage);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(edit.path + ": " + error.what());
+  }
   scale(edit.strength, result);
   return result;
 }

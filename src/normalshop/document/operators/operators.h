@@ -17,5 +17,6 @@ OperatorType paint_operator();
 OperatorType rotate_operator();
 OperatorType balance_operator();
 OperatorType project_operator();
+OperatorType warp_operator();
 
 }  // namespace normalshop

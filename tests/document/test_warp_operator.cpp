@@ -1,0 +1,149 @@
+#include "document/edit_fixture.h"
+
+#include "normalshop/core/error.h"
+#include "normalshop/document/image_document.h"
+
+namespace normalshop::test {
+namespace {
+
+constexpr int size = 96;
+
+/// A flat picture with one round bump of radius 6 at `place` (from the middle, y up): red, where
+/// the rest is grey.
+ImageDocument bump_at(const Vec2f& place, Border border = Border::Clamp) {
+  ImageDocument::Images images;
+  RawImage codes(size, size, 3, CodeType::F32);
+  images.colors = ColorImage(size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const Vec2f p(static_cast<float>(x) - 0.5F * (size - 1),
+                    0.5F * (size - 1) - static_cast<float>(y));
+      const Vec2f d = (p - place) / 6.0F;
+      const float fall = std::max(0.0F, 1.0F - d.squaredNorm());
+      const Vec3f n = normal_from_slope(-1.5F * fall * d);
+      for (int c = 0; c < 3; ++c) codes.row<float>(y)[3 * x + c] = n[c];
+      images.colors(x, y) = Vec3f(0.3F + 0.7F * fall * fall, 0.3F, 0.3F);
+    }
+  }
+  images.normals = NormalMap(std::move(codes), NormalConvention{.signed_float = true});
+  images.border = border;
+  return ImageDocument(std::move(images));
+}
+
+/// The middle of what is red.
+Vec2f red_place(const ImageDocument& document) {
+  Vec2f sum(0.0F, 0.0F);
+  float weight = 0.0F;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const float red = document.colors()(x, y).x() - 0.3F;
+      sum += red * Vec2f(static_cast<float>(x) - 0.5F * (size - 1),
+                         0.5F * (size - 1) - static_cast<float>(y));
+      weight += red;
+    }
+  }
+  return sum / weight;
+}
+
+/// The same of the bump, by the steepness of its slopes.
+Vec2f bump_place(const ImageDocument& document) {
+  const PictureSlopes picture = slopes_of(document);
+  Vec2f sum(0.0F, 0.0F);
+  float weight = 0.0F;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const float steep = picture.slopes(x, y).norm();
+      sum += steep * Vec2f(static_cast<float>(x) - 0.5F * (size - 1),
+                           0.5F * (size - 1) - static_cast<float>(y));
+      weight += steep;
+    }
+  }
+  return sum / weight;
+}
+
+std::string message_of(const std::string& fields) {
+  try {
+    bump_at({0.0F, 0.0F}).apply(edit(R"("operator": "warp", "view": "front", )" + fields));
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(WarpOperator, GrabMovesNormalsAndColoursTogether) {
+  ImageDocument document = bump_at({-8.0F, 4.0F});
+  document.apply(
+      edit(R"("operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 34},
+                         "strokes": [[[-8, 4], [4, -4]]])"));
+  EXPECT_LT((red_place(document) - Vec2f(4.0F, -4.0F)).norm(), 1.0F) << red_place(document);
+  EXPECT_LT((bump_place(document) - red_place(document)).norm(), 1.0F) << bump_place(document);
+}
+
+TEST(WarpOperator, BeyondTheBrushNothingChanges) {
+  ImageDocument document = bump_at({-8.0F, 4.0F});
+  const ColorImage before = document.colors();
+  document.apply(
+      edit(R"("operator": "warp", "view": "front", "options": {"kind": "twirl", "radius": 12},
+                         "strokes": [[[-8, 8]]])"));
+  EXPECT_TRUE(document.normals().has_edits());
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const Vec2f p(static_cast<float>(x) - 0.5F * (size - 1),
+                    0.5F * (size - 1) - static_cast<float>(y));
+      if ((p - Vec2f(-8.0F, 8.0F)).norm() < 15.0F) continue;  // a cell of the lattice more
+      EXPECT_FALSE(document.normals().edited(x, y)) << x << " " << y;
+      EXPECT_EQ(document.colors()(x, y), before(x, y));
+    }
+  }
+}
+
+TEST(WarpOperator, PairsOfStrokesMoveWhatIsBetween) {
+  ImageDocument document = bump_at({-8.0F, 0.0F});
+  document.apply(edit(R"("operator": "warp", "view": "front", "strokes": [
+      [[-40, -40], [40, -40], [40, 40], [-40, 40]],
+      [[-8, -8], [-8, 8]], [[8, -8], [8, 8]]])"));
+  EXPECT_LT((red_place(document) - Vec2f(8.0F, 0.0F)).norm(), 1.0F) << red_place(document);
+  EXPECT_LT((bump_place(document) - Vec2f(8.0F, 0.0F)).norm(), 1.0F) << bump_place(document);
+  EXPECT_FALSE(document.normals().edited(3, 3));
+}
+
+TEST(WarpOperator, ATileIsWarpedAcrossItsSides) {
+  ImageDocument document = bump_at({42.0F, 0.0F}, Border::Wrap);
+  document.apply(
+      edit(R"("operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 30},
+                         "strokes": [[[42, 0], [54, 0]]])"));
+  // 54 is -42 of the next copy.
+  const int row = size / 2;
+  EXPECT_GT(document.colors()(5, row).x(), 0.7F);
+  EXPECT_LT(document.colors()(size - 6, row).x(), 0.5F);
+}
+
+TEST(WarpOperator, MovesTheDetailsOfAMesh) {
+  Document mesh = document(plane_grid(2), noise_map(64, CodeType::U16));
+  const EditReport report = mesh.apply(edit(R"("operator": "warp", "view": "front",
+      "options": {"kind": "pinch", "radius": 0.3}, "strokes": [[[0, 0]]])"));
+  EXPECT_GT(report.pushed.changed, 500U);
+  EXPECT_FALSE(map_of(mesh).edited(2, 2));
+}
+
+TEST(WarpOperator, SaysWhatItNeeds) {
+  EXPECT_NE(message_of(R"("options": {"kind": "push"}, "strokes": [[[0, 0], [1, 1]]])")
+                .find("options.radius is missing; it must be a number above 0 for a brush"),
+            std::string::npos);
+  EXPECT_NE(message_of(R"("options": {"kind": "grab", "radius": 20}, "strokes": [[[0, 0]]])")
+                .find("strokes[0] must have at least 2 points"),
+            std::string::npos);
+  EXPECT_NE(message_of(R"("strokes": [[[0, 0], [1, 1]]])").find("odd number of lists"),
+            std::string::npos);
+  const std::string folded =
+      message_of(R"("options": {"kind": "grab", "radius": 12, "on_fold": "refuse"},
+      "strokes": [[[-10, 0], [40, 0]]])");
+  EXPECT_NE(folded.find("r.json: edits[0]: "), std::string::npos) << folded;
+  // A pair whose target lies outside the outline.
+  const std::string outside = message_of(R"("strokes": [
+      [[-20, -20], [20, -20], [20, 20], [-20, 20]], [[0, 0]], [[30, 0]]])");
+  EXPECT_NE(outside.find("r.json: edits[0]: "), std::string::npos) << outside;
+}
+
+}  // namespace
+}  // namespace normalshop::test
