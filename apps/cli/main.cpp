@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   add_demo_verb(program);
   add_describe_verb(program);
   add_operator_verbs(program);
+  add_shade_verb(program);
   add_segment_verb(program);
   add_check_verb(program);
   try {

@@ -140,6 +140,19 @@ TEST_F(Pictures, SegmentsAreLabelsPicturesAndMasks) {
   EXPECT_NEAR(image("flat.png").code(size - 3, 3, 0), 127.5F, 1.0F);
 }
 
+TEST_F(Pictures, ShadeLightsFromWhereItIsTold) {
+  write_image(folder_ / "tilted.png", tilted_map(16, 40.0, CodeType::U8));  // towards +x
+  good(
+      {"shade", path("tilted.png"), "--light", "1,0,1", "--light", "1,0.1,1", "-o", path("r.png")});
+  good({"shade", path("tilted.png"), "--light=-1,0,1", "--light=-1,0.1,1", "-o", path("l.png")});
+  EXPECT_GT(image("r.png").code(8, 8, 1), image("l.png").code(8, 8, 1) + 60.0F);
+  good({"shade", path("normal.png"), "--color", path("color.png"), "--shadows", "8", "-o",
+        path("s.png")});
+  EXPECT_EQ(image("s.png").width(), size);
+  bad({"shade", path("normal.png"), "--light", "1,2", "-o", path("o.png")}, 2,
+      {"--light", "x,y,z"});
+}
+
 TEST_F(Pictures, WrongUseIsOneSentence) {
   const std::string normal = path("normal.png");
   bad({"smooth", normal, "--sigma", "wide", "-o", path("o.png")}, 2,
