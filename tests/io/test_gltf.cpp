@@ -408,6 +408,47 @@ TEST(GltfWriter, FlipsEveryUvOnceAndItsLimits) {
   EXPECT_FALSE(out["meshes"][0]["primitives"][0]["attributes"].contains("TANGENT"));
 }
 
+std::vector<float> tangents_along(float x, float y) {
+  return {x, y, 0, 1, x, y, 0, 1, x, y, 0, 1, x, y, 0, 1};
+}
+
+/// What a reader of the written file takes must be the frames that the maps were edited in.
+TEST(GltfWriter, LeavesOutOnlyTheTangentsThatWereNotUsed) {
+  const TempFolder folder;
+  GltfBuilder gltf;
+  const auto primitives = [&]() -> Json& { return gltf.json["meshes"][0]["primitives"]; };
+  for (int i = 0; i < 4; ++i) gltf.square();
+  primitives()[0]["attributes"]["TANGENT"] = gltf.floats(tangents_along(0, 1), 4);
+  std::vector<float> one_zero = tangents_along(0, 1);
+  one_zero[5] = 0.0F;
+  primitives()[2]["attributes"]["TANGENT"] = gltf.floats(one_zero, 4);
+  primitives()[3]["attributes"]["TANGENT"] = gltf.floats(tangents_along(0, 1), 4);
+  primitives()[3]["attributes"].erase("NORMAL");
+  // Apart from each other, or they would share vertices.
+  for (std::size_t i = 1; i < 4; ++i) {
+    const float z = static_cast<float>(i);
+    primitives()[i]["attributes"]["POSITION"] =
+        gltf.floats({0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z}, 3);
+  }
+  write_file(folder / "in.gltf", gltf.text());
+  const Model model = read_model(folder / "in.gltf");
+  EXPECT_FALSE(model.has_tangents);
+  EXPECT_TRUE(model.some_tangents);
+  ASSERT_EQ(model.mesh.tangents.size(), 24U);
+  for (std::size_t corner = 0; corner < 24; ++corner) {
+    const Vec3f expected = corner < 6 ? Vec3f(0, 1, 0) : Vec3f(1, 0, 0);
+    EXPECT_LT(angle_degrees(model.mesh.tangents[corner].head<3>(), expected), 1e-4) << corner;
+  }
+  const WrittenModel written = write_model(model, folder / "out.gltf", {{0, {"n.png"}}});
+  EXPECT_TRUE(mentions(written.notes, "tangents"));
+  const Json out = Json::parse(read_file(folder / "out.gltf"));
+  const Json& parts = out["meshes"][0]["primitives"];
+  EXPECT_TRUE(parts[0]["attributes"].contains("TANGENT"));
+  EXPECT_FALSE(parts[2]["attributes"].contains("TANGENT"));
+  EXPECT_FALSE(parts[3]["attributes"].contains("TANGENT"));
+  EXPECT_EQ(read_model(folder / "out.gltf").mesh.tangents, model.mesh.tangents);
+}
+
 TEST(GltfWriter, NeverWritesOutsideItsFolder) {
   const TempFolder folder;
   std::filesystem::create_directories(folder / "in");

@@ -43,7 +43,9 @@ struct Model {
   std::vector<std::string> notes;  ///< sentences: what was guessed or ignored
   std::filesystem::path path;
   bool has_normals = true;    ///< in the file for all faces; else computed where missing
-  bool has_tangents = false;  ///< in the file for all faces; else mesh.tangents is empty
+  bool has_tangents = false;  ///< in the file for all faces
+  /// In the file for some faces; the others' are computed. Without any, mesh.tangents is empty.
+  bool some_tangents = false;
   /// The file's own content, for writing it back.
   std::shared_ptr<const ModelSource> source;
 };
@@ -78,10 +80,11 @@ struct WrittenModel {
 };
 
 /// Writes the model with new normal maps. Everything else stays as the file has it: nodes, meshes,
-/// vertex order, faces, materials, extras. Buffers, materials and textures that the model refers to
-/// are copied beside it, except over files in `normal_maps`, which the caller writes. A model read
-/// with flip_v is written with v flipped in its UVs, so that it shows right elsewhere; its maps are
-/// not flipped. The extension must be the source's. Throws InvalidInput or IoError.
+/// vertex order, faces, materials, extras; only tangents go that were not used. Buffers, materials
+/// and textures that the model refers to are copied beside it, except over files in `normal_maps`,
+/// which the caller writes. A model read with flip_v is written with v flipped in its UVs, so that
+/// it shows right elsewhere; its maps are not flipped. The extension must be the source's. Throws
+/// InvalidInput or IoError.
 WrittenModel write_model(const Model& model, const std::filesystem::path& path,
                          const std::map<std::size_t, NormalMapReference>& normal_maps);
 

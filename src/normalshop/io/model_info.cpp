@@ -88,7 +88,9 @@ Value model_info(const std::filesystem::path& file, bool flip_v) {
                        {"low", vec3_value(box.low)},
                        {"high", vec3_value(box.high)},
                        {"normals", opened.model.has_normals ? "from the file" : "computed"},
-                       {"tangents", opened.model.has_tangents ? "from the file" : "MikkTSpace"},
+                       {"tangents", opened.model.has_tangents    ? "from the file"
+                                    : opened.model.some_tangents ? "from the file and MikkTSpace"
+                                                                 : "MikkTSpace"},
                        {"seam edges", seams.edges.size()},
                        {"open edges", seams.open_edges.size()},
                        {"irregular edges", seams.irregular_edges.size()},

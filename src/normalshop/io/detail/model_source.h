@@ -2,7 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "normalshop/io/model.h"
@@ -12,15 +16,19 @@ namespace normalshop {
 
 enum class ModelFormat { Gltf, Glb, Obj };
 
+/// Mesh and place in its list.
+using PrimitiveIndex = std::pair<std::size_t, std::size_t>;
+
 /// A model file's content as it was read.
 struct ModelSource {
   ModelFormat format = ModelFormat::Gltf;
   std::filesystem::path folder;
-  std::string text;                         ///< glTF: its JSON; OBJ: the whole file
-  std::vector<std::string> buffers;         ///< glTF: bytes of each buffer
-  bool flip_v = false;                      ///< read with flipped v
-  std::vector<std::string> material_names;  ///< OBJ: by material index
-  std::vector<std::string> libraries;       ///< OBJ: its .mtl files, as the file names them
+  std::string text;                            ///< glTF: its JSON; OBJ: the whole file
+  std::vector<std::string> buffers;            ///< glTF: bytes of each buffer
+  bool flip_v = false;                         ///< read with flipped v
+  std::set<PrimitiveIndex> replaced_tangents;  ///< glTF: their TANGENT does not count
+  std::vector<std::string> material_names;     ///< OBJ: by material index
+  std::vector<std::string> libraries;          ///< OBJ: its .mtl files, as the file names them
 };
 
 /// Unique, non-empty, ASCII letters, digits, "-", "_" and "." only, not starting with ".".
