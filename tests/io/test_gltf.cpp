@@ -469,6 +469,49 @@ TEST(GltfWriter, NeverWritesOutsideItsFolder) {
   EXPECT_EQ(written.files.size(), 2U);
 }
 
+/// The builder's one buffer as two files of one name, in the folders a and b beside the model's.
+void split_buffer(const GltfBuilder& gltf, const TempFolder& folder) {
+  const auto half = static_cast<std::size_t>(gltf.json["bufferViews"][4]["byteOffset"].get<int>());
+  Json json = gltf.json;
+  json["buffers"] = {{{"byteLength", half}, {"uri", "../a/data.bin"}},
+                     {{"byteLength", gltf.bytes.size() - half}, {"uri", "../b/data.bin"}}};
+  for (std::size_t i = 4; i < json["bufferViews"].size(); ++i) {
+    Json& view = json["bufferViews"][i];
+    view["buffer"] = 1;
+    view["byteOffset"] = view["byteOffset"].get<std::size_t>() - half;
+  }
+  for (const char* name : {"in", "out", "a", "b"}) {
+    std::filesystem::create_directories(folder / name);
+  }
+  write_file(folder / "a/data.bin", std::string_view(gltf.bytes).substr(0, half));
+  write_file(folder / "b/data.bin", std::string_view(gltf.bytes).substr(half));
+  write_file(folder / "a/color.png", std::string_view("first"));
+  write_file(folder / "b/color.png", std::string_view("second"));
+  write_file(folder / "in/a.gltf", json.dump());
+}
+
+TEST(GltfWriter, CompanionsOfOneNameStayApart) {
+  for (const bool flip : {false, true}) {
+    const TempFolder folder;
+    GltfBuilder gltf;
+    gltf.square();
+    gltf.square();
+    gltf.json["images"] = {
+        {{"uri", "../a/color.png"}}, {{"uri", "../b/color.png"}}, {{"uri", "../b/color.png"}}};
+    split_buffer(gltf, folder);
+    const Model model = read_model(folder / "in/a.gltf", {.flip_v = flip});
+    const WrittenModel written = write_model(model, folder / "out/a.gltf", {{0, {"n.png"}}});
+    EXPECT_EQ(written.files.size(), 5U);
+    const Json out = Json::parse(read_file(folder / "out/a.gltf"));
+    const std::array<std::string, 3> expected{"first", "second", "second"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string name = "out/" + out["images"][i]["uri"].get<std::string>();
+      EXPECT_EQ(read_file(folder / name), expected[i]);
+    }
+    EXPECT_EQ(read_model(folder / "out/a.gltf").mesh.uvs, model.mesh.uvs);
+  }
+}
+
 TEST(GltfWriter, RefusesAnotherFormatAndUnwritablePlaces) {
   const TempFolder folder;
   GltfBuilder gltf;

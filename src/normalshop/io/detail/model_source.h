@@ -46,7 +46,7 @@ class Companions {
   /// refers to it: the same, or its bare file name (numbered where another file has it) where it
   /// leads out of the folder.
   std::string copy(const std::string& reference);
-  /// Writes bytes instead of copying.
+  /// Writes bytes under that name, or a numbered one, instead of copying.
   std::string write(const std::string& reference, std::string_view bytes);
 
   WrittenModel result;
@@ -55,11 +55,13 @@ class Companions {
   std::string place(const std::string& reference) const;
   std::string unused(const std::string& wanted) const;
   bool reserved(const std::filesystem::path& target) const;
+  void put(const std::string& name, std::string_view bytes);
 
   std::filesystem::path source_folder_;
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> reserved_;
   std::map<std::string, std::string> done_;  ///< by source path
+  std::set<std::string> taken_;              ///< names of companions
 };
 
 WrittenModel write_gltf(const Model& model, const std::filesystem::path& path,
