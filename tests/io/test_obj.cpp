@@ -1,4 +1,5 @@
 #include <functional>
+#include <map>
 #include <span>
 
 #include "io/temp_folder.h"
@@ -176,6 +177,92 @@ TEST_F(ObjWithMaterials, AreWrittenBackLineByLine) {
   const Model back = read_model(folder_ / "out/b.obj");
   EXPECT_EQ(back.texture_sets[1].normal_map->path, folder_ / "out/two_normal.png");
   EXPECT_EQ(back.mesh.uvs, model.mesh.uvs);
+}
+
+/// The object written back with these libraries in place; returns out/b.obj and out/b.mtl.
+class ObjWriterText : public ObjWithMaterials {
+ protected:
+  std::pair<std::string, std::string> written(
+      const std::string& object, const std::map<std::string, std::string>& libraries = {},
+      const ModelReadOptions& options = {}) {
+    for (const auto& [name, text] : libraries) {
+      std::filesystem::create_directories((folder_ / name).parent_path());
+      write_file(folder_ / name, std::string_view(text));
+    }
+    write_file(folder_ / "in/x.obj", std::string_view(object));
+    model_ = read_model(folder_ / "in/x.obj", options);
+    std::map<std::size_t, NormalMapReference> maps;
+    for (std::size_t i = 0; i < model_.texture_sets.size(); ++i) {
+      maps[i] = {"set" + std::to_string(i) + ".png"};
+    }
+    notes_ = write_model(model_, folder_ / "out/b.obj", maps).notes;
+    back_ = read_model(folder_ / "out/b.obj");
+    return {read_file(folder_ / "out/b.obj"), read_file(folder_ / "out/b.mtl")};
+  }
+  Model model_;
+  Model back_;
+  std::vector<std::string> notes_;
+};
+
+TEST_F(ObjWriterText, NamesMayHoldNumberSigns) {
+  const auto [object, library] =
+      written("mtllib a#b.mtl\n" + square +
+                  "usemtl Material #25\nf 1/1 2/2 3/3\nusemtl Material #26\nf 1/1 3/3 4/4\n"
+                  "usemtl plain # a comment\nf 1/1 2/2 4/4\nusemtl  spaced\nf 2/2 3/3 4/4\n",
+              {{"in/a#b.mtl",
+                "newmtl Material #25\nmap_Kd maps/h.png\nnewmtl Material #26\nnewmtl plain\n"
+                "map_Kd maps/c d.png\nnewmtl   spaced\nKd 0.25 0.5 1\n"}});
+  ASSERT_EQ(model_.texture_sets.size(), 4U);
+  EXPECT_EQ(model_.texture_sets[0].albedo->path, folder_ / "in/maps/h.png");
+  EXPECT_FALSE(model_.texture_sets[1].albedo.has_value());
+  EXPECT_EQ(model_.texture_sets[2].albedo->path, folder_ / "in/maps/c d.png");
+  EXPECT_EQ(model_.texture_sets[3].albedo_factor, Vec3f(0.25F, 0.5F, 1.0F));
+  ASSERT_EQ(back_.texture_sets.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(back_.texture_sets[i].normal_map->path,
+              folder_ / ("out/set" + std::to_string(i) + ".png"));
+  }
+  EXPECT_EQ(library.find("newmtl Material\n"), std::string::npos) << library;
+}
+
+TEST_F(ObjWriterText, CopiedTexturesAreNamedWhereTheyLie) {
+  const std::string object =
+      "mtllib sub/s.mtl\nmtllib t.mtl\n" + square + "usemtl s\nf 1/1 2/2 3/3\n";
+  const auto [text, library] =
+      written(object, {{"in/sub/s.mtl", "newmtl s\r\nmap_Kd -s 2 2 2 c d.png \r\nKs 1 1 1\r\n"},
+                       {"in/sub/c d.png", "first"},
+                       {"in/t.mtl", "newmtl t\nmap_Kd ./c d.png\nmap_Ks ../tex/c d.png\n"},
+                       {"in/c d.png", "second"},
+                       {"tex/c d.png", "third"}});
+  EXPECT_EQ(library,
+            "newmtl s\r\nmap_Kd -s 2 2 2 sub/c d.png \r\nKs 1 1 1\r\nnorm set0.png\n"
+            "newmtl t\nmap_Kd ./c d.png\nmap_Ks c d_2.png\n");
+  EXPECT_EQ(read_file(folder_ / "out/sub/c d.png"), "first");
+  EXPECT_EQ(read_file(folder_ / "out/c d.png"), "second");
+  EXPECT_EQ(read_file(folder_ / "out/c d_2.png"), "third");
+  EXPECT_TRUE(notes_.empty()) << notes_[0];
+}
+
+TEST_F(ObjWriterText, FlippingTouchesTheSecondNumberAlone) {
+  const auto [text, library] = written(
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\n  vt\t0.250  +0.750 0.5 # v 1\r\nvt 0.5 \\\n  0.25\nvt 1\n"
+      "f 1/1 2/2 3/3\n",
+      {}, {.flip_v = true});
+  EXPECT_NE(text.find("  vt\t0.250  0.25 0.5 # v 1\r\nvt 0.5 \\\n  0.75\nvt 1 1\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(back_.mesh.uvs, model_.mesh.uvs);
+}
+
+/// The file is called x.obj, so that is what its faces without a material would be called too.
+TEST_F(ObjWriterText, FacesWithoutAMaterialGetANameOfTheirOwn) {
+  const auto [text, library] =
+      written("mtllib x.mtl\n" + square + "f 1/1 2/2 3/3\nusemtl x\nf 1/1 3/3 4/4\n",
+              {{"in/x.mtl", "newmtl x\nKd 0.5 0.5 0.5\nnewmtl x_2\n"}});
+  EXPECT_NE(text.find("usemtl x_3\nf 1/1 2/2 3/3\nusemtl x\nf"), std::string::npos) << text;
+  ASSERT_EQ(back_.texture_sets.size(), 2U);
+  EXPECT_EQ(back_.texture_sets[0].normal_map->path, folder_ / "out/set0.png");
+  EXPECT_EQ(back_.texture_sets[1].normal_map->path, folder_ / "out/set1.png");
 }
 
 TEST_F(ObjWithMaterials, FlippedVIsWrittenFlipped) {

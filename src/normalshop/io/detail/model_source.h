@@ -28,6 +28,7 @@ struct ModelSource {
   bool flip_v = false;                         ///< read with flipped v
   std::set<PrimitiveIndex> replaced_tangents;  ///< glTF: their TANGENT does not count
   std::vector<std::string> material_names;     ///< OBJ: by material index
+  std::set<std::string> defined_materials;     ///< OBJ: names in its .mtl files
   std::vector<std::string> libraries;          ///< OBJ: its .mtl files, as the file names them
 };
 
