@@ -176,7 +176,21 @@ TEST(Gltf, TextureTransformIsAppliedToUvs) {
   // (1, 1) is scaled to (2, 3), and rotated by a quarter against the clock (v runs down).
   EXPECT_NEAR(model.mesh.uvs[1].x(), 3.1F, 1e-5F);
   EXPECT_NEAR(model.mesh.uvs[1].y(), -1.8F, 1e-5F);
-  EXPECT_EQ(model.texture_sets[0].normal_map->scale, 0.5F);
+  EXPECT_EQ(model.texture_sets[0].normal_scale, 0.5F);
+}
+
+TEST(Gltf, OneImageUnderTwoScalesIsTwoSets) {
+  GltfBuilder gltf;
+  for (int i = 0; i < 3; ++i) gltf.square()["material"] = i;
+  gltf.json["images"] = {{{"uri", "n.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  Json scaled = textured("normalTexture", 0);
+  scaled["normalTexture"]["scale"] = 0.3;
+  gltf.json["materials"] = {textured("normalTexture", 0), scaled, textured("normalTexture", 0)};
+  const Model model = gltf.read();
+  ASSERT_EQ(model.texture_sets.size(), 2U);
+  EXPECT_EQ(model.texture_sets[0].materials, (std::vector<int>{0, 2}));
+  EXPECT_EQ(model.texture_sets[1].normal_scale, 0.3F);
 }
 
 TEST(Gltf, Ktx2IsSkippedForItsFallbackAndNamedWithout) {

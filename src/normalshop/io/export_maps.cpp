@@ -16,6 +16,7 @@ NormalConvention target_convention(const NormalConvention& own,
   to.green_down = *preset == ExportPreset::DirectX;
   const bool renders_two = *preset != ExportPreset::Gltf && to.space == NormalSpace::Tangent;
   if (!renders_two) to.two_channel = false;  // glTF and object space need all three
+  if (to.space != NormalSpace::Tangent) to.scale = 1.0F;
   return to;
 }
 
@@ -53,7 +54,9 @@ std::vector<std::filesystem::path> write_maps(const OpenedDocument& opened,
     progress.at(0.5, "writing maps");
     write_image(staged.path() / name, codes);
     files.push_back(staged.path() / name);
-    references[i] = {name, opened.sets[i].scale_applied};
+    const NormalConvention& own = opened.document.storage().sets[i].normals.convention();
+    references[i] = {name, target_convention(own, options.preset).scale !=
+                               opened.model.texture_sets[i].normal_scale};
     if (type == CodeType::F32 && opened.model.path.extension() != ".obj") {
       notes.push_back(name + ": glTF viewers read only PNG and JPEG; use --bits 8 or 16 for them");
     }

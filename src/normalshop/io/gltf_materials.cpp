@@ -107,7 +107,6 @@ std::optional<MapSource> MaterialTable::source_of(const Texture& texture) {
   const std::string uri = string_at(image, "uri");
   MapSource source;
   source.uv_set = texture.uv.set;
-  source.scale = texture.scale;
   source.mime = string_at(image, "mimeType");
   source.name = !uri.empty() && !is_data_uri(uri)   ? percent_decoded(uri)
                 : !string_at(image, "name").empty() ? string_at(image, "name")
@@ -174,10 +173,11 @@ std::size_t MaterialTable::make(int material) {
   const Textures textures = textures_of(material);
   const auto& [normal, albedo] = textures;
   const UvChoice uv = textures.uv();
-  const std::string key = (normal   ? "n:" + identity(normal->image)
-                           : albedo ? "a:" + identity(albedo->image)
-                                    : "material:" + std::to_string(material)) +
-                          key_of(uv);
+  const std::string key =
+      (normal   ? "n:" + identity(normal->image) + "|" + std::to_string(normal->scale)
+       : albedo ? "a:" + identity(albedo->image)
+                : "material:" + std::to_string(material)) +
+      key_of(uv);
   const auto known = std::find(keys_.begin(), keys_.end(), key);
   if (known != keys_.end()) {
     const auto set = static_cast<std::size_t>(known - keys_.begin());
@@ -190,6 +190,7 @@ std::size_t MaterialTable::make(int material) {
   const std::string name = string_at(json, "name");
   set.name = file_safe_name(name.empty() ? stem : name, model_.texture_sets);
   read_factor(json, name_of_material(material), set.albedo_factor);
+  if (normal) set.normal_scale = normal->scale;
   if (normal) set.normal_map = source_of(*normal);
   const bool same_uv = albedo && key_of(albedo->uv) == key_of(uv);
   if (albedo && same_uv) set.albedo = source_of(*albedo);

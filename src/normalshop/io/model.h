@@ -22,14 +22,14 @@ struct MapSource {
   std::vector<std::byte> bytes;  ///< image embedded in the model file
   std::string mime;              ///< "image/png", ...; empty when not stated
   int uv_set = 0;
-  float scale = 1.0F;  ///< of a glTF normal texture: multiplies x and y of its normals
 };
 
-/// Triangles that share one atlas: all materials with the same normal image (or, where none has
-/// one, the same colour image) and the same UVs. Its index is Mesh::texture_sets' value.
+/// Triangles that share one atlas: all materials with the same normal image and scale (or, where
+/// none has one, the same colour image) and the same UVs. Its index is Mesh::texture_sets' value.
 struct TextureSet {
   std::string name;  ///< safe as a file name, different from the others'
   std::optional<MapSource> normal_map;
+  float normal_scale = 1.0F;  ///< glTF: multiplies x and y of the normals
   std::optional<MapSource> albedo;
   Vec3f albedo_factor = Vec3f::Ones();  ///< linear RGB, multiplies the albedo
   std::vector<int> materials;           ///< of the file; -1 stands for "no material"
@@ -71,7 +71,7 @@ Model parse_obj(std::span<const std::byte> bytes, const std::filesystem::path& p
 /// A texture set's new normal map, as the written model refers to it.
 struct NormalMapReference {
   std::string file;            ///< path relative to the written model, "/" between folders
-  bool scale_applied = false;  ///< the map holds MapSource::scale already: the model's becomes 1
+  bool scale_applied = false;  ///< the map holds normal_scale already: the model's becomes 1
 };
 
 struct WrittenModel {
