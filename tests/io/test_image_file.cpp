@@ -258,7 +258,7 @@ TEST(ColorFile, EverySrgbCodeComesBack) {
   RawImage codes(256, 1, 3, CodeType::U8);
   for (int i = 0; i < 768; ++i) codes.data()[i] = static_cast<std::uint8_t>(i / 3);
   write_image(folder / "in.png", codes);
-  const ColorImage color = read_color(folder / "in.png");
+  const ColorImage color = color_from_codes(read_image(folder / "in.png"));
   EXPECT_NEAR(color(128, 0).x(), 0.2158605, 1e-6);
   EXPECT_EQ(color(0, 0).x(), 0.0F);
   EXPECT_EQ(color(255, 0).x(), 1.0F);

@@ -106,8 +106,6 @@ std::optional<MapSource> MaterialTable::source_of(const Texture& texture) {
   const std::string where = indexed("images", texture.image);
   const std::string uri = string_at(image, "uri");
   MapSource source;
-  source.uv_set = texture.uv.set;
-  source.mime = string_at(image, "mimeType");
   source.name = !uri.empty() && !is_data_uri(uri)   ? percent_decoded(uri)
                 : !string_at(image, "name").empty() ? string_at(image, "name")
                                                     : where;
@@ -121,7 +119,6 @@ std::optional<MapSource> MaterialTable::source_of(const Texture& texture) {
     if (!data) fail(file_, where + ".uri is a damaged data URI");
     const auto bytes = std::as_bytes(std::span(data->bytes));
     source.bytes.assign(bytes.begin(), bytes.end());
-    source.mime = data->mime;
     return source;
   }
   if (!uri.empty()) {

@@ -24,11 +24,9 @@ RawImage read_image(std::span<const std::byte> bytes, std::string_view name);
 
 struct ImageWriteOptions {
   bool half_float = false;  ///< OpenEXR only: 16-bit floats
-  int png_compression = 3;  ///< zlib level 0 to 9: 3 is fast and within a few percent of 6
-  int jpeg_quality = 95;    ///< 1 to 100
 };
 
-/// Writes codes exactly (JPEG: as close as its quality allows), beside the target and then renamed.
+/// Writes codes exactly (JPEG: as close as quality 95 allows), beside the target and then renamed.
 /// The extension tells the format: .png (8, 16), .tif .tiff (8, 16, 32), .exr (32), .jpg .jpeg (8,
 /// 1 or 3 channels), .tga (8). Throws InvalidInput when the format cannot hold the image, IoError
 /// when it cannot be written.
@@ -36,9 +34,7 @@ void write_image(const std::filesystem::path& path, const RawImage& image,
                  const ImageWriteOptions& options = {});
 
 /// Linear RGB: 8- and 16-bit codes are taken as sRGB, floats as linear. Gray is repeated, alpha
-/// left out. Throws like read_image().
-ColorImage read_color(const std::filesystem::path& path);
-ColorImage read_color(std::span<const std::byte> bytes, std::string_view name);
+/// left out.
 ColorImage color_from_codes(const RawImage& codes);
 
 /// A grey picture, or the mean of a coloured one's channels, as 0 (code 0 and NaN) to 1 (the

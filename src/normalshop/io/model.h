@@ -20,8 +20,6 @@ struct MapSource {
   std::string name;              ///< for messages
   std::filesystem::path path;    ///< file beside the model; it may be missing
   std::vector<std::byte> bytes;  ///< image embedded in the model file
-  std::string mime;              ///< "image/png", ...; empty when not stated
-  int uv_set = 0;
 };
 
 /// Triangles that share one atlas: all materials with the same normal image and scale (or, where
