@@ -14,13 +14,21 @@ namespace normalshop {
 inline constexpr int max_image_side = 65536;
 inline constexpr std::size_t max_image_pixels = std::size_t{1} << 30;
 
+/// What a file was and its RawImage does not say.
+struct ImageTraits {
+  bool tiff = false;
+  bool half_float = false;  ///< F32 codes were 16-bit floats
+};
+
 /// The file's codes exactly as stored: no colour conversion, no alpha multiplication. Palettes are
 /// expanded, fewer than 8 bits a channel are scaled to 8, half floats come as F32, further channels
 /// than RGBA are left out. Throws IoError (missing, damaged, truncated) or InvalidInput (no
-/// picture, a format or code type that is not accepted, too large).
-RawImage read_image(const std::filesystem::path& path);
+/// picture, a format or code type that is not accepted, too large). Fills `traits` if there are
+/// any.
+RawImage read_image(const std::filesystem::path& path, ImageTraits* traits = nullptr);
 /// The same from memory; `name` stands for the file in messages.
-RawImage read_image(std::span<const std::byte> bytes, std::string_view name);
+RawImage read_image(std::span<const std::byte> bytes, std::string_view name,
+                    ImageTraits* traits = nullptr);
 
 struct ImageWriteOptions {
   bool half_float = false;  ///< OpenEXR only: 16-bit floats

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <string>
@@ -11,6 +9,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/options.h"
 #include "normalshop/io/atomic_file.h"
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/image_file.h"
 
 namespace normalshop {
@@ -25,13 +24,6 @@ struct Format {
 };
 
 constexpr int one_to_four = 0b11110;
-
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 Format format_for(const std::filesystem::path& path) {
   const std::string extension = extension_of(path);

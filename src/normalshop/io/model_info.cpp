@@ -1,8 +1,8 @@
 #include "normalshop/io/model_info.h"
 
 #include <algorithm>
-#include <cctype>
 
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/open_document.h"
 #include "normalshop/surface/seams.h"
@@ -101,9 +101,7 @@ Value model_info(const std::filesystem::path& file, bool flip_v) {
 }  // namespace
 
 Value file_info(const std::filesystem::path& file, bool flip_v) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(file);
   const bool model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
   return model ? model_info(file, flip_v) : image_info(file);
 }

@@ -57,8 +57,9 @@ std::vector<std::optional<MapSource>> given_maps(const std::vector<std::string>&
   return out;
 }
 
-RawImage read_source(const MapSource& source) {
-  return source.bytes.empty() ? read_image(source.path) : read_image(source.bytes, source.name);
+RawImage read_source(const MapSource& source, ImageTraits* traits = nullptr) {
+  return source.bytes.empty() ? read_image(source.path, traits)
+                              : read_image(source.bytes, source.name, traits);
 }
 
 /// A scale that codes can be read with; maps of others are multiplied by it.
@@ -80,7 +81,6 @@ NormalMap apply_scale(const NormalMap& map, float scale) {
 NormalConvention choose_convention(const ConventionGuess& guess, const OpenOptions& options,
                                    float scale) {
   NormalConvention convention = guess.convention;
-  if (options.space) convention.space = *options.space;
   if (options.green_down) convention.green_down = *options.green_down;
   if (convention.space != NormalSpace::Tangent) convention.two_channel = false;
   if (convention.space == NormalSpace::Tangent && codes_bear(scale)) convention.scale = scale;
@@ -125,16 +125,17 @@ NormalMap scaled_normals(NormalMap map, const TextureSet& set, OpenedDocument& o
 
 NormalMap open_normals(const MapSource& source, const TextureSet& set, const OpenOptions& options,
                        OpenedDocument& opened, OpenedSet& info, const Progress& progress) {
-  RawImage codes = read_source(source);
+  ImageTraits traits;
+  RawImage codes = read_source(source, &traits);
   progress.at(0.3, "guessing conventions");
   info.normal_map = source.name.empty() ? source.path.string() : source.name;
   info.normal_map_path = source.path;
   info.type = codes.type();
-  const std::string extension = source.path.extension().string();
-  info.tiff = extension == ".tif" || extension == ".tiff";
+  info.tiff = traits.tiff;
+  info.half_float = traits.half_float;
   info.imported_width = codes.width();
   info.imported_height = codes.height();
-  info.guess = naming(info.normal_map, [&] { return guess_convention(codes); });
+  info.guess = naming(info.normal_map, [&] { return guess_convention(codes, options.space); });
   const NormalConvention convention = choose_convention(*info.guess, options, set.normal_scale);
   opened.notes.push_back(set.name + ": " + said(*info.guess, convention));
   NormalMap map = naming(info.normal_map, [&] { return NormalMap(std::move(codes), convention); });
