@@ -340,6 +340,11 @@ TEST_F(BadInput, Flags) {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
+  const auto picture = [&](const Arguments& more) {
+    Arguments all{"render", path("square.obj"), "-o", path("p.png")};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
   expect_nothing_left(
       {{{}, {"--help"}, 2},
        {{"paint"}, {"paint"}, 2},
@@ -353,6 +358,12 @@ TEST_F(BadInput, Flags) {
         {"--resolution", "0x5"},
         2},
        {{"render", path("square.obj"), "-o", path("p.png"), "--style", "toon"}, {"--style"}, 2},
+       {picture({"--width", "nan"}), {"--width", "nan"}, 2},
+       {picture({"--width", "1e39"}), {"--width", "1e39"}, 2},
+       {picture({"--width", "inf"}), {"--width"}, 2},
+       {picture({"--width", "-1"}), {"--width"}, 2},
+       {picture({"--center", "1e30,0,0"}), {"--center"}, 2},
+       {picture({"--view", "nan,0,1"}), {"--view"}, 2},
        {{"compare", path("map.png")}, {"b is required"}, 2},
        {plus({"--albedo", "arm=" + path("map.png")}), {"arm=" + path("map.png")}}});
 }
