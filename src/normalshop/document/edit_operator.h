@@ -74,8 +74,9 @@ class EditOperator {
   /// In a picture that is a tile: does it find the other side by input.border alone? Others get
   /// their strokes repeated beyond the sides.
   virtual bool repeats_itself() const { return false; }
-  /// Loads what the options name.
+  /// Loads what the option asset_field() names.
   virtual void load(Assets&) {}
+  virtual std::string_view asset_field() const { return {}; }
   /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
   /// Object units read beyond the extent.

@@ -97,7 +97,8 @@ std::shared_ptr<const EditOperator> read_operator(const FieldReader& reader, Ass
   try {
     operation->load(assets);
   } catch (const Error& e) {
-    throw InvalidInput(options.path() + ": " + e.what());
+    const std::string field(operation->asset_field());
+    throw InvalidInput(options.path() + (field.empty() ? "" : "." + field) + ": " + e.what());
   }
   return operation;
 }
