@@ -281,7 +281,7 @@ TEST(ExportMaps, SparesTheModelsOwnFolder) {
 TEST(ModelInfo, CountsWhatIsThere) {
   const TempFolder folder;
   const OpenOptions options = write_two_sets(folder);
-  const Value info = file_info(options.model, false);
+  const Value info = file_info(options.model);
   EXPECT_EQ(*info.find("triangles")->number(), 4.0);
   const Value::Array& sets = *info.find("texture set")->array();
   ASSERT_EQ(sets.size(), 2U);
@@ -293,14 +293,14 @@ TEST(ModelInfo, CountsWhatIsThere) {
 TEST(ModelInfo, TellsMapsFromPictures) {
   const TempFolder folder;
   write_image(folder / "flat.png", flat_normal_map(16, 16, CodeType::U16).codes());
-  const Value map = file_info(folder / "flat.png", false);
+  const Value map = file_info(folder / "flat.png");
   EXPECT_TRUE(*map.find("normal map")->boolean());
   EXPECT_EQ(*map.find("bits")->text(), "16");
   RawImage gray(16, 16, 1, CodeType::U8);
   std::fill_n(gray.data(), gray.size_bytes(), std::uint8_t{90});
   write_image(folder / "gray.png", gray);
-  EXPECT_FALSE(*file_info(folder / "gray.png", false).find("normal map")->boolean());
-  EXPECT_THROW(file_info(folder / "none.png", false), IoError);
+  EXPECT_FALSE(*file_info(folder / "gray.png").find("normal map")->boolean());
+  EXPECT_THROW(file_info(folder / "none.png"), IoError);
 }
 
 TEST(FileAssets, ReadsAPatchWithItsOpacity) {

@@ -70,10 +70,10 @@ Value set_info(const OpenedDocument& opened, const Seams& seams, std::size_t i) 
   return out;
 }
 
-Value model_info(const std::filesystem::path& file, bool flip_v) {
+Value model_info(const std::filesystem::path& file, const ModelReadOptions& reading) {
   OpenOptions options;
   options.model = file;
-  options.flip_v = flip_v;
+  options.flip_v = reading.flip_v;
   const OpenedDocument opened = open_document(options);
   const Mesh& mesh = opened.document.mesh();
   const Seams seams = find_seams(mesh);
@@ -100,10 +100,10 @@ Value model_info(const std::filesystem::path& file, bool flip_v) {
 
 }  // namespace
 
-Value file_info(const std::filesystem::path& file, bool flip_v) {
+Value file_info(const std::filesystem::path& file, const ModelReadOptions& reading) {
   const std::string extension = extension_of(file);
   const bool model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
-  return model ? model_info(file, flip_v) : image_info(file);
+  return model ? model_info(file, reading) : image_info(file);
 }
 
 }  // namespace normalshop
