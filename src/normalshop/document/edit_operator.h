@@ -26,8 +26,9 @@ struct Extent {
 };
 /// The box around the strokes, widened; empty without points.
 Extent extent_of(const std::vector<UnitStroke>& strokes, float margin);
+enum class StrokeEnds;
 /// The same around the smooth curves through the strokes' points (rgbn/pen.h).
-Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bool closed);
+Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, StrokeEnds ends);
 
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {

@@ -126,8 +126,6 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   return edit;
 }
 
-Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z()}; }
-
 void add_extent(Value::Object& fields, float width, float height) {
   if (width > 0.0F) fields.emplace_back("width", width);
   if (height > 0.0F) fields.emplace_back("height", height);

@@ -12,8 +12,6 @@ namespace normalshop {
 
 namespace {
 
-Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z()}; }
-
 Value guess_value(const ConventionGuess& guess) {
   return Value::Object{{"sentence", guess.sentence},
                        {"space", name_of(guess.convention.space)},
