@@ -290,7 +290,7 @@ TEST(Push, changes_that_are_not_finite_are_not_written) {
     StorageAtlas storage = storage_of(mesh, noise_map(64, CodeType::U8));
     const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 100);
     EditImages images = constant_edit(chart, {0.3F, 0.1F});
-    images.coverage.resize(chart.grid.width(), chart.grid.height(), 0.5F);
+    images.coverage = MaskImage(chart.grid.width(), chart.grid.height(), 0.5F);
     if (bad == 0) images.change(50, 40).x() = std::nanf("");
     if (bad == 1) images.change(50, 40).y() = -std::numeric_limits<float>::infinity();
     if (bad == 2) images.coverage(50, 40) = std::nanf("");

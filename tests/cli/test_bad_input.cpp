@@ -243,7 +243,7 @@ TEST_F(BadInput, Recipes) {
   const std::vector<Wrong> recipes{
       {"", {"line 1"}},
       {good.substr(0, good.size() / 2), {"line 1"}},
-      {with(good, "pen", "paint"), {"edits[0].operator", "paint", "smooth"}},
+      {with(good, "pen", "scribble"), {"edits[0].operator", "scribble", "smooth"}},
       {with(good, "\"width\": 0.2, ", ""), {"edits[0].options.width", "missing"}},
       {with(good, "\"width\"", "\"wide\": 1, \"width\""), {"edits[0].options", "wide"}},
       {with(good, "0.2", "NaN"), {"line 1"}},
@@ -347,8 +347,8 @@ TEST_F(BadInput, Flags) {
   };
   expect_nothing_left(
       {{{}, {"--help"}, 2},
-       {{"paint"}, {"paint"}, 2},
-       {{"edit"}, {"model", "normalshop edit --help"}, 2},
+       {{"scribble"}, {"scribble"}, 2},
+       {{"edit"}, {"--recipe", "normalshop edit --help"}, 2},
        {plus({"--colour"}), {"--colour"}, 2},
        {plus({"--space", "screen"}), {"--space", "tangent"}, 2},
        {plus({"--bits", "12"}), {"--bits", "16"}, 2},
