@@ -22,6 +22,19 @@ WrongUse wrong_use(const CLI::App& app, const std::string& what) {
   return WrongUse(missing + "; see normalshop --help");
 }
 
+/// Last one first, as CLI11 wants them. It takes "-.5" for a flag, but not "-0.5".
+std::vector<std::string> arguments(int argc, char** argv) {
+  std::vector<std::string> all;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string text = argv[i];
+    const bool number =
+        text.size() > 2 && text.starts_with("-.") && text[2] >= '0' && text[2] <= '9';
+    if (number) text.insert(1, "0");
+    all.push_back(std::move(text));
+  }
+  return all;
+}
+
 }  // namespace
 
 Argument& Argument::required() {
@@ -30,7 +43,12 @@ Argument& Argument::required() {
 }
 
 Argument& Argument::positive() {
-  option_->check(CLI::PositiveNumber);
+  // CLI11's own checks compare, so they let "nan" through.
+  option_->check([](const std::string& text) {
+    double value = 0.0;
+    const bool fits = CLI::detail::lexical_cast(text, value) && value >= 1e-9 && value <= 1e9;
+    return fits ? std::string() : "must be a number from 1e-9 to 1e9, not " + text;
+  });
   return *this;
 }
 
@@ -89,7 +107,7 @@ Verb CommandLine::verb(const std::string& name, const std::string& summary) {
 
 void CommandLine::run(int argc, char** argv) {
   try {
-    app_->parse(argc, argv);
+    app_->parse(arguments(argc, argv));
   } catch (const CLI::Success& asked) {  // for help or the version
     app_->exit(asked);
   } catch (const CLI::ParseError& error) {

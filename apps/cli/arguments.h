@@ -28,6 +28,7 @@ class Argument {
  public:
   explicit Argument(CLI::Option& option) : option_(&option) {}
   Argument& required();
+  /// From 1e-9 to 1e9.
   Argument& positive();
   Argument& between(int lowest, int highest);
   Argument& one_of(const std::vector<std::string>& names);

@@ -13,19 +13,40 @@ struct DescribeFlags {
   bool json = false;
 };
 
+/// The value's JSON on one line.
+std::string line_of(const Value& value) {
+  const std::string json = to_json(value);
+  return json.substr(0, json.size() - 1);
+}
+
+std::string joined(const Value& names) {
+  std::string text;
+  for (const Value& name : *names.array()) text += (text.empty() ? "" : ", ") + *name.text();
+  return text;
+}
+
+/// "unit; what is accepted; default", as far as there is one.
+std::string remarks_of(const Value& field) {
+  std::string text;
+  const auto add = [&](const std::string& remark) { text += (text.empty() ? "" : "; ") + remark; };
+  if (const Value* unit = field.find("unit")) add("unit: " + *unit->text());
+  if (const Value* range = field.find("range")) {
+    add(line_of(range->array()->front()) + " to " + line_of(range->array()->back()));
+  }
+  if (const Value* names = field.find("names")) add("one of " + joined(*names));
+  const Value* standard = field.find("default");
+  add(standard == nullptr ? "required" : "default " + line_of(*standard));
+  return text;
+}
+
 void print_text() {
   const Value described = describe_operators();
   for (const Value& type : *described.array()) {
     std::printf("%s: %s.\n  strokes: %s\n", type.find("operator")->text()->c_str(),
                 type.find("summary")->text()->c_str(), type.find("strokes")->text()->c_str());
     for (const Value& field : *type.find("options")->array()) {
-      const Value* unit = field.find("unit");
-      const Value* standard = field.find("default");
-      std::string fallback = standard == nullptr ? "required" : to_json(*standard);
-      if (standard != nullptr) fallback = "default " + fallback.substr(0, fallback.size() - 1);
-      std::printf("  %-12s %s%s%s (%s)\n", field.find("name")->text()->c_str(),
-                  field.find("help")->text()->c_str(), unit != nullptr ? "; unit: " : "",
-                  unit != nullptr ? unit->text()->c_str() : "", fallback.c_str());
+      std::printf("  %-12s %s (%s)\n", field.find("name")->text()->c_str(),
+                  field.find("help")->text()->c_str(), remarks_of(field).c_str());
     }
     std::printf("\n");
   }

@@ -38,7 +38,7 @@ void print_value(const Value& value, int depth) {
 }
 
 void run_info(const InfoFlags& flags) {
-  const Value info = file_info(flags.file, flags.flip_v);
+  const Value info = file_info(flags.file, {.flip_v = flags.flip_v});
   if (flags.json) {
     std::fputs(to_json(info).c_str(), stdout);
   } else {

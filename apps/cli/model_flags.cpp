@@ -37,7 +37,7 @@ std::optional<Vec3f> read_vector(const std::string& text) {
   const char* end = at + text.size();
   for (int i = 0; i < 3; ++i) {
     const auto [next, error] = std::from_chars(at, end, v[i]);
-    if (error != std::errc() || !std::isfinite(v[i])) return std::nullopt;
+    if (error != std::errc() || !(std::abs(v[i]) <= 1e9F)) return std::nullopt;
     if (i < 2 && (next == end || *next != ',')) return std::nullopt;
     if (i == 2 && next != end) return std::nullopt;
     at = next + 1;
@@ -49,7 +49,7 @@ std::optional<Vec3f> read_vector(const std::string& text) {
 
 Vec3f parse_vector(const std::string& text, const std::string& flag) {
   if (const auto v = read_vector(text)) return *v;
-  throw WrongUse(flag, "must be three numbers x,y,z, not \"" + text + "\"");
+  throw WrongUse(flag, "must be three numbers x,y,z up to 1e9, not \"" + text + "\"");
 }
 
 ViewSpec parse_view(const std::string& text) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "chart_fixtures.h"
 #include "support/meshes.h"
@@ -281,6 +282,26 @@ TEST(Push, maps_without_a_direction_count_as_flat) {
   push(mesh, chart, constant_edit(chart, {0.3F, 0.1F}).edit(), storage);
   EXPECT_LT(angle_degrees(storage.sets[0].normals.normal(30, 20), normal_from_slope({0.3F, 0.1F})),
             1e-3);
+}
+
+TEST(Push, changes_that_are_not_finite_are_not_written) {
+  const Mesh mesh = plane_grid(2);
+  for (int bad = 0; bad < 3; ++bad) {
+    StorageAtlas storage = storage_of(mesh, noise_map(64, CodeType::U8));
+    const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 100);
+    EditImages images = constant_edit(chart, {0.3F, 0.1F});
+    images.coverage = MaskImage(chart.grid.width(), chart.grid.height(), 0.5F);
+    if (bad == 0) images.change(50, 40).x() = std::nanf("");
+    if (bad == 1) images.change(50, 40).y() = -std::numeric_limits<float>::infinity();
+    if (bad == 2) images.coverage(50, 40) = std::nanf("");
+    push(mesh, chart, images.edit(), storage);
+    const NormalMap& map = storage.sets[0].normals;
+    for_texels(storage, [&](int x, int y, const SurfacePoint&) {
+      ASSERT_TRUE(map.vector(x, y).allFinite());
+    });
+    EXPECT_GT(map.edited_count(), 64U * 64U - 30U);
+    EXPECT_LT(map.edited_count(), 64U * 64U);
+  }
 }
 
 TEST(Push, frames_without_a_tangent_still_hold_a_normal) {

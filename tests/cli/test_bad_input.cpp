@@ -243,7 +243,7 @@ TEST_F(BadInput, Recipes) {
   const std::vector<Wrong> recipes{
       {"", {"line 1"}},
       {good.substr(0, good.size() / 2), {"line 1"}},
-      {with(good, "pen", "paint"), {"edits[0].operator", "paint", "smooth"}},
+      {with(good, "pen", "scribble"), {"edits[0].operator", "scribble", "smooth"}},
       {with(good, "\"width\": 0.2, ", ""), {"edits[0].options.width", "missing"}},
       {with(good, "\"width\"", "\"wide\": 1, \"width\""), {"edits[0].options", "wide"}},
       {with(good, "0.2", "NaN"), {"line 1"}},
@@ -340,10 +340,15 @@ TEST_F(BadInput, Flags) {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
+  const auto picture = [&](const Arguments& more) {
+    Arguments all{"render", path("square.obj"), "-o", path("p.png")};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
   expect_nothing_left(
       {{{}, {"--help"}, 2},
-       {{"paint"}, {"paint"}, 2},
-       {{"edit"}, {"model", "normalshop edit --help"}, 2},
+       {{"scribble"}, {"scribble"}, 2},
+       {{"edit"}, {"--recipe", "normalshop edit --help"}, 2},
        {plus({"--colour"}), {"--colour"}, 2},
        {plus({"--space", "screen"}), {"--space", "tangent"}, 2},
        {plus({"--bits", "12"}), {"--bits", "16"}, 2},
@@ -353,6 +358,12 @@ TEST_F(BadInput, Flags) {
         {"--resolution", "0x5"},
         2},
        {{"render", path("square.obj"), "-o", path("p.png"), "--style", "toon"}, {"--style"}, 2},
+       {picture({"--width", "nan"}), {"--width", "nan"}, 2},
+       {picture({"--width", "1e39"}), {"--width", "1e39"}, 2},
+       {picture({"--width", "inf"}), {"--width"}, 2},
+       {picture({"--width", "-1"}), {"--width"}, 2},
+       {picture({"--center", "1e30,0,0"}), {"--center"}, 2},
+       {picture({"--view", "nan,0,1"}), {"--view"}, 2},
        {{"compare", path("map.png")}, {"b is required"}, 2},
        {plus({"--albedo", "arm=" + path("map.png")}), {"arm=" + path("map.png")}}});
 }

@@ -105,7 +105,8 @@ TEST_F(Verbs, SpeakJson) {
        {"compare", path("map.png"), path("map.png"), "-o", path("c.png"), "--json"},
        {"info", path("square.obj"), "--json"},
        {"info", path("map.png"), "--json"},
-       {"describe", "--json"}});
+       {"describe", "--json"},
+       {"demo", "-o", path("demo"), "--size", "256", "--json"}});
   const Value report = json_of(runs[0]);
   EXPECT_GT(number(report, "texels_changed"), 50.0);
   EXPECT_GT(number(report, "largest_change_degrees"), 5.0);
@@ -130,6 +131,15 @@ TEST_F(Verbs, SpeakJson) {
   EXPECT_EQ(*map.find("guessed")->find("green")->text(), "up");
   EXPECT_EQ(*map.find("guessed")->find("space")->text(), "tangent");
   EXPECT_GE(json_of(runs[5]).array()->size(), 5U);
+  const Value demo = json_of(runs[6]);
+  EXPECT_GT(number(*demo.find("edited"), "texels_changed"), 50.0);
+  EXPECT_EQ(demo.find("pictures")->array()->size(), 3U);
+  for (const char* field : {"model", "recipe"}) {
+    EXPECT_TRUE(fs::is_regular_file(*demo.find(field)->text())) << field;
+  }
+  for (const Value& picture : *demo.find("pictures")->array()) {
+    EXPECT_TRUE(fs::is_regular_file(*picture.text())) << *picture.text();
+  }
 }
 
 struct MapKind {
@@ -249,6 +259,44 @@ TEST_F(Verbs, RenderDrawsEveryStyle) {
       EXPECT_NE(pictures[i], pictures.back()) << styles[i] << " and " << style;
     }
   }
+}
+
+TEST_F(Verbs, NumbersMayBeginWithAPoint) {
+  const Arguments common{"render", path("square.obj"), "--size", "16", "--resolution", "40x30"};
+  std::vector<Arguments> runs;
+  for (const char* view : {"-.5,.25,1", "-0.5,0.25,1"}) {
+    runs.push_back(common);
+    runs.back().insert(runs.back().end(),
+                       {"--view", view, "-o", path(std::to_string(runs.size()) + ".png")});
+  }
+  run_all(runs);
+  expect_same_codes(folder_ / "1.png", folder_ / "2.png");
+}
+
+TEST_F(Verbs, DescribeListsUnitsRangesAndNames) {
+  const std::string text = run_all({{"describe"}})[0].out;
+  const Value described = parse_json(run_all({{"describe", "--json"}})[0].out, "describe");
+  std::size_t ranges = 0;
+  for (const Value& type : *described.array()) {
+    for (const Value& field : *type.find("options")->array()) {
+      const std::string name = *field.find("name")->text();
+      const std::size_t line =
+          text.find("  " + name + " ", text.find(*type.find("operator")->text() + ": "));
+      ASSERT_NE(line, std::string::npos) << name;
+      const std::string said = text.substr(line, text.find('\n', line) - line);
+      if (const Value* names = field.find("names")) {
+        for (const Value& one : *names->array()) {
+          EXPECT_NE(said.find(*one.text()), std::string::npos) << said;
+        }
+      }
+      if (field.find("range") != nullptr) {
+        ++ranges;
+        EXPECT_NE(said.find(" to "), std::string::npos) << said;
+      }
+    }
+  }
+  EXPECT_GT(ranges, 5U);
+  EXPECT_NE(text.find("0 to 1"), std::string::npos);
 }
 
 TEST_F(Verbs, EditsAreTheSameOnOneProcessor) {

@@ -7,6 +7,7 @@
 #include "normalshop/core/normal_map.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/random.h"
+#include "normalshop/core/sample.h"
 #include "normalshop/core/slope.h"
 
 namespace normalshop {
@@ -213,6 +214,57 @@ TEST(NormalMap, SampleIsBilinearAndWraps) {
   }
   EXPECT_LT((map.sample({-0.25F, 1.3F}) - map.sample({0.75F, 0.3F})).norm(), 1e-5F);
   EXPECT_TRUE(map.sample({-1e-9F, 1.0F - 6e-8F}).allFinite());
+}
+
+/// glTF: normalize((2 c - 1) * (scale, scale, 1)).
+TEST(NormalMap, AScaleMultipliesXAndYOfTheCodes) {
+  for (const CodeType type : {CodeType::U8, CodeType::U16, CodeType::F32}) {
+    for (const float scale : {0.25F, -0.5F, 2.0F, 4.0F}) {
+      NormalConvention convention;
+      convention.signed_float = true;
+      const RawImage codes = NormalMap(all_pairs(3), convention).encode(type, convention);
+      const NormalMap plain(codes, convention);
+      convention.scale = scale;
+      NormalMap map(codes, convention);
+      std::vector<Vec3f> row(256);
+      map.read_vectors(77, row.data());
+      for (int x = 0; x < 256; ++x) {
+        const Vec3f expected = plain.vector(x, 77).cwiseProduct(Vec3f(scale, scale, 1.0F));
+        EXPECT_LT((map.vector(x, 77) - expected).norm(), 1e-6F);
+        EXPECT_EQ(row[static_cast<std::size_t>(x)], map.vector(x, 77));
+      }
+      EXPECT_TRUE(same_codes(map.encode(), codes));
+      const Vec2f uv(0.3F, 0.7F);
+      const Vec3f sampled = plain.sample(uv).cwiseProduct(Vec3f(scale, scale, 1.0F));
+      EXPECT_LT((map.sample(uv) - sampled).norm(), 1e-6F);
+      std::vector<float> values(5 * (1 + sample_padding));
+      float* const at = values.data();
+      constexpr std::size_t step = 1 + sample_padding;
+      at[0] = uv.x();
+      at[step] = uv.y();
+      map.sample(at, at + step, 1, at + 2 * step, at + 3 * step, at + 4 * step);
+      EXPECT_LT((Vec3f(at[2 * step], at[3 * step], at[4 * step]) - sampled).norm(), 1e-5F);
+    }
+  }
+}
+
+/// An edit is read as the code that is written for it will be.
+TEST(NormalMap, EditsAreStoredForTheScale) {
+  for (const float scale : {0.25F, -0.5F, 2.0F, 4.0F}) {
+    NormalConvention convention;
+    convention.scale = scale;
+    NormalMap map(RawImage(80, 3, 3, CodeType::U16), convention);
+    for (int x = 0; x < 80; ++x) {
+      map.set_normal(x, 1, normal_from_slope(Vec2f(0.05F * static_cast<float>(x) - 2.0F, 0.5F)));
+    }
+    const NormalMap back(map.encode(), convention);
+    for (int x = 0; x < 80; ++x) {
+      const Vec3f n = normal_from_slope(Vec2f(0.05F * static_cast<float>(x) - 2.0F, 0.5F));
+      EXPECT_LT(angle_degrees(map.normal(x, 1), n), 1e-3);
+      EXPECT_LT(angle_degrees(back.normal(x, 1), n), 0.02);
+      EXPECT_LT((back.vector(x, 1) - map.vector(x, 1)).norm(), 2e-4F);
+    }
+  }
 }
 
 TEST(NormalMap, CopiesHaveTheirOwnEdits) {

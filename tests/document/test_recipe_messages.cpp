@@ -119,7 +119,7 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
   EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 0})"),
             "r.json: edits[0].options.size must be a number above 0, not the number 0");
   EXPECT_EQ(other("stamp", R"({"patch": "x.png", "size": 1})"),
-            "r.json: edits[0].options: x.png: cannot be read: there is no such file");
+            "r.json: edits[0].options.patch: x.png: cannot be read: there is no such file");
   EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 1, "scale_x": 0})"),
             "r.json: edits[0].options.scale_x must be a scale that is not 0, not the number 0");
   EXPECT_EQ(other("combine", "{}"), "r.json: edits[0].options.image is missing; it must be a text");

@@ -70,4 +70,17 @@ struct GltfBuilder {
   }
 };
 
+/// A material with that texture as "normalTexture", or as its colour.
+inline GltfBuilder::Json textured(const char* key, int index) {
+  if (std::string(key) == "normalTexture") return {{key, {{"index", index}}}};
+  return {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", index}}}}}};
+}
+
+inline bool mentions(const std::vector<std::string>& notes, const std::string& words) {
+  for (const auto& note : notes) {
+    if (note.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace normalshop::test

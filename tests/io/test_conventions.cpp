@@ -73,7 +73,8 @@ TEST(Conventions, AxisAlignedBevelsStayUndecided) {
 }
 
 /// A normal map of waves, as a given convention codes it.
-RawImage waves(CodeType type, const NormalConvention& convention, int channels, bool sphere) {
+RawImage waves(CodeType type, const NormalConvention& convention, int channels, bool sphere,
+               float steepness = 1.0F) {
   RawImage flat(128, 128, channels, type);
   std::memset(flat.data(), 0, flat.size_bytes());
   NormalConvention full = convention;
@@ -84,6 +85,7 @@ RawImage waves(CodeType type, const NormalConvention& convention, int channels, 
       const float b = 0.15F * static_cast<float>(x) - 0.25F * static_cast<float>(y);
       Vec3f n(-0.3F * std::cos(a) - 0.2F * std::cos(b), 0.15F * std::cos(a) - 0.33F * std::cos(b),
               1.0F);
+      n.head<2>() *= steepness;
       if (sphere) {
         const float t = 3.1416F * static_cast<float>(y) / 127.0F;
         const float f = 6.2832F * static_cast<float>(x) / 128.0F;
@@ -116,6 +118,22 @@ TEST(Conventions, ObjectSpaceIsTheWholeSphere) {
   const ConventionGuess guess = guess_convention(waves(CodeType::U8, convention, 3, true));
   EXPECT_EQ(guess.convention.space, NormalSpace::Object);
   EXPECT_GT(guess.space_confidence, 0.5);
+}
+
+/// Very steep tangent-space maps look like object space; who knows better still needs green.
+TEST(Conventions, GreenIsGuessedInASpaceThatIsKnown) {
+  for (const bool down : {false, true}) {
+    NormalConvention convention;
+    convention.green_down = down;
+    const RawImage codes = waves(CodeType::U16, convention, 3, false, 12.0F);
+    ASSERT_EQ(guess_convention(codes).convention.space, NormalSpace::Object);
+    const ConventionGuess guess = guess_convention(codes, NormalSpace::Tangent);
+    EXPECT_EQ(guess.convention.space, NormalSpace::Tangent);
+    EXPECT_EQ(guess.convention.green_down, down) << guess.sentence;
+    EXPECT_GT(guess.green_ratio, 2.0) << guess.sentence;
+    EXPECT_NE(guess.sentence.find("looks like object space"), std::string::npos);
+    EXPECT_EQ(guess_convention(codes, NormalSpace::World).sentence, "world space");
+  }
 }
 
 TEST(Conventions, SignedFloatsAndTwoChannels) {

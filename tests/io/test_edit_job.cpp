@@ -278,6 +278,25 @@ TEST(EditJob, EditsInTheWorldOfTheNodes) {
   EXPECT_NEAR(reach, 26, 8);
 }
 
+TEST(EditJob, ReportsFilesWithTheirFolders) {
+  const TempFolder folder;
+  fs::create_directories(folder / "maps");
+  write_image(folder / "maps/n.png", flat_normal_map(16, 16, CodeType::U8).codes());
+  OpenOptions options;
+  options.model = write_model_file(folder, test::plane_grid(1), "maps/n.png");
+  const EditJob job = run_edit_job(options, {}, folder / "out", {});
+  const Value report = report_value(job);
+  const Value::Array& files = *report.find("files")->array();
+  ASSERT_EQ(files.size(), job.files.size());
+  bool in_maps = false;
+  for (const Value& file : files) {
+    EXPECT_TRUE(fs::is_regular_file(folder / "out" / *file.text())) << *file.text();
+    in_maps = in_maps || *file.text() == "maps/n.png";
+  }
+  EXPECT_TRUE(in_maps);
+  EXPECT_NE(read_file(folder / "out/report.json").find("\"maps/n.png\""), std::string::npos);
+}
+
 TEST(EditJob, DoesNotDependOnThreads) {
   const TempFolder folder;
   write_image(folder / "waves.png", waves(256, 256, CodeType::U8));

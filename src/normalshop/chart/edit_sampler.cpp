@@ -1,6 +1,7 @@
 #include "normalshop/chart/edit_sampler.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/visible_weight.h"
@@ -96,6 +97,10 @@ bool EditSampler::read(TexelBatch& batch) const {
     const auto k = static_cast<std::size_t>(i);
     if (batch.weight[k] > 0.0F && !edit_.coverage.empty()) {
       batch.covered[k] = batch.weight[k] * coverage_at(batch.point.x[k], batch.point.y[k]);
+    }
+    // What is no number reaches no map.
+    if (!std::isfinite(batch.change_x[k] + batch.change_y[k] + batch.covered[k])) {
+      batch.change_x[k] = batch.change_y[k] = batch.covered[k] = 0.0F;
     }
     any = any || batch.acts(i);
   }

@@ -24,12 +24,6 @@ class IoError : public Error {
   using Error::Error;
 };
 
-/// A document is inconsistent with what is asked of it.
-class DocumentError : public Error {
- public:
-  using Error::Error;
-};
-
 /// The user cancelled; nothing has changed.
 class Cancelled : public Error {
  public:

@@ -34,9 +34,9 @@ Code to_code(float value) {
 float nearest_half(float value) { return std::round(2.0F * value) / 2.0F; }
 
 Vec3f complete(float x, float y, float z, const NormalConvention& convention) {
-  const float up = convention.green_down ? -y : y;
-  if (!convention.two_channel) return {x, up, z};
-  return {x, up, std::sqrt(std::max(0.0F, 1.0F - x * x - y * y))};
+  if (convention.two_channel) z = std::sqrt(std::max(0.0F, 1.0F - x * x - y * y));
+  return {convention.scale * x, (convention.green_down ? -convention.scale : convention.scale) * y,
+          z};
 }
 
 template <class Code>
@@ -48,10 +48,11 @@ Vec3f decode(const Code* code, const NormalConvention& convention, const CodeRan
 }
 
 /// The vector as codes can hold it.
-Vec3f storable(const Vec3f& v, bool two_channel, bool bounded) {
+Vec3f storable(Vec3f v, const NormalConvention& convention, bool bounded) {
+  v.head<2>() /= convention.scale;
   const float largest = v.cwiseAbs().maxCoeff();
   if (!(largest <= 1e18F) || !v.allFinite()) return Vec3f::Zero();
-  if (two_channel) return v.isZero() ? v : Vec3f(v.normalized());
+  if (convention.two_channel) return v.isZero() ? v : Vec3f(v.normalized());
   return bounded && largest > 1.0F ? Vec3f(v / largest) : v;
 }
 
@@ -99,7 +100,7 @@ void encode_texels(const Vec3f* vectors, int count, const NormalConvention& conv
   with_row(image, y, [&]<class Code>(Code* row) {
     Code* code = row + static_cast<std::ptrdiff_t>(x0) * channels;
     for (int i = 0; i < count; ++i, code += channels) {
-      const Vec3f v = storable(vectors[i], convention.two_channel, bounded);
+      const Vec3f v = storable(vectors[i], convention, bounded);
       code[0] = to_code<Code>(v.x() * gain + zero);
       code[1] = to_code<Code>(v.y() * up + zero);
       if (!convention.two_channel) code[2] = to_code<Code>(v.z() * gain + zero);

@@ -33,6 +33,13 @@ NormalMap::NormalMap(RawImage codes, const NormalConvention& convention)
   tiles_.resize(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows));
 }
 
+/// As long as the unit vector that its code will hold becomes once it is scaled: what a renderer
+/// interpolates.
+Vec3f NormalMap::with_coded_length(const Vec3f& n) const {
+  const float per_scale = 1.0F / convention_.scale;
+  return n / Vec3f(n.x() * per_scale, n.y() * per_scale, n.z()).norm();
+}
+
 NormalMap::NormalMap(const NormalMap& other)
     : codes_(other.codes_),
       convention_(other.convention_),
@@ -105,9 +112,9 @@ Vec3f NormalMap::sample_codes(const WrappedTaps& tap) const {
     return w00 * static_cast<float>(upper[left + c]) + w10 * static_cast<float>(upper[right + c]) +
            w01 * static_cast<float>(lower[left + c]) + w11 * static_cast<float>(lower[right + c]);
   };
-  const float y = mean(1) * range_.scale + range_.offset;
-  return {mean(0) * range_.scale + range_.offset, convention_.green_down ? -y : y,
-          mean(2) * range_.scale + range_.offset};
+  const float y = (mean(1) * range_.scale + range_.offset) * convention_.scale;
+  return {(mean(0) * range_.scale + range_.offset) * convention_.scale,
+          convention_.green_down ? -y : y, mean(2) * range_.scale + range_.offset};
 }
 
 /// Is any tile edited that these places may read? Also true where finding out would take long.
@@ -136,9 +143,10 @@ void NormalMap::sample(const float* u, const float* v, int count, float* x, floa
   if (count <= 0) return;
   if (!convention_.two_channel && !may_read_edits(u, v, count) &&
       sample_bytes(codes_, nullptr, u, v, count, x, y, z)) {
-    const float up = convention_.green_down ? -1.0F : 1.0F;
+    const float right = convention_.scale;
+    const float up = convention_.green_down ? -right : right;
     for (int i = 0; i < count; ++i) {
-      x[i] = x[i] * range_.scale + range_.offset;
+      x[i] = right * (x[i] * range_.scale + range_.offset);
       y[i] = up * (y[i] * range_.scale + range_.offset);
       z[i] = z[i] * range_.scale + range_.offset;
     }

@@ -26,6 +26,9 @@ struct NormalConvention {
   bool two_channel = false;   ///< only x and y are stored; z = sqrt(1 - x^2 - y^2)
   bool centred_code = false;  ///< integer codes: 128 (32768) stands for 0 exactly, not 127.5
   bool signed_float = false;  ///< float codes are components themselves, not (n + 1) / 2
+  /// Multiplies x and y of what the codes say (glTF's normalTexture.scale). Not 0; below 0.25 and
+  /// above 4 codes of 8 bits can't hold every direction well.
+  float scale = 1.0F;
 
   bool operator==(const NormalConvention&) const = default;
 };
@@ -86,7 +89,7 @@ class NormalMap {
   void set_normal(int x, int y, const Vec3f& n) {
     auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
     if (!t) t = std::make_unique<Tile>();
-    t->normals[index_in_tile(x, y)] = n;
+    t->normals[index_in_tile(x, y)] = convention_.scale == 1.0F ? n : with_coded_length(n);
     t->edited[index_in_tile(x, y)] = true;
   }
 
@@ -100,6 +103,7 @@ class NormalMap {
     std::array<Vec3f, tile_size * tile_size> normals;
     std::bitset<tile_size * tile_size> edited;
   };
+  Vec3f with_coded_length(const Vec3f& n) const;
   void encode_edits(int y, RawImage& out) const;
   template <class Code>
   Vec3f sample_codes(const WrappedTaps& tap) const;

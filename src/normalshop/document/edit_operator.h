@@ -26,8 +26,9 @@ struct Extent {
 };
 /// The box around the strokes, widened; empty without points.
 Extent extent_of(const std::vector<UnitStroke>& strokes, float margin);
+enum class StrokeEnds;
 /// The same around the smooth curves through the strokes' points (rgbn/pen.h).
-Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bool closed);
+Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, StrokeEnds ends);
 
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {
@@ -74,8 +75,9 @@ class EditOperator {
   /// In a picture that is a tile: does it find the other side by input.border alone? Others get
   /// their strokes repeated beyond the sides.
   virtual bool repeats_itself() const { return false; }
-  /// Loads what the options name.
+  /// Loads what the option asset_field() names.
   virtual void load(Assets&) {}
+  virtual std::string_view asset_field() const { return {}; }
   /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
   /// Object units read beyond the extent.

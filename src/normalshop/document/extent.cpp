@@ -20,7 +20,7 @@ Extent extent_of(const std::vector<UnitStroke>& strokes, float margin) {
   return e;
 }
 
-Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bool closed) {
+Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, StrokeEnds ends) {
   constexpr float fine = 2048.0F;  // pixels across the box in which curves are measured
   Extent e = extent_of(strokes, 0.0F);
   if (e.empty()) return e;
@@ -31,8 +31,7 @@ Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bo
     for (const UnitStroke& stroke : strokes) {
       Stroke pixels;
       for (const UnitPoint& p : stroke) pixels.push_back({scale * (p.position - origin)});
-      const Stroke curve =
-          smooth_stroke(pixels, 2.0F, closed ? StrokeEnds::Closed : StrokeEnds::Open);
+      const Stroke curve = smooth_stroke(pixels, 2.0F, ends);
       for (const StrokePoint& p : curve) {
         e.low = e.low.cwiseMin(origin + p.position / scale);
         e.high = e.high.cwiseMax(origin + p.position / scale);

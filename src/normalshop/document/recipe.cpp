@@ -97,7 +97,8 @@ std::shared_ptr<const EditOperator> read_operator(const FieldReader& reader, Ass
   try {
     operation->load(assets);
   } catch (const Error& e) {
-    throw InvalidInput(options.path() + ": " + e.what());
+    const std::string field(operation->asset_field());
+    throw InvalidInput(options.path() + (field.empty() ? "" : "." + field) + ": " + e.what());
   }
   return operation;
 }
@@ -124,8 +125,6 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   edit.operation->check_strokes(edit.strokes, reader.path() + ".strokes");
   return edit;
 }
-
-Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z()}; }
 
 void add_extent(Value::Object& fields, float width, float height) {
   if (width > 0.0F) fields.emplace_back("width", width);

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "normalshop/core/vec.h"
+
 namespace normalshop {
 
 /// A JSON value that keeps the order of its fields: what recipes are read from and reports written
@@ -42,6 +44,9 @@ class Value {
  private:
   std::variant<std::monostate, bool, double, std::string, Array, Object> data_;
 };
+
+/// A list of its components.
+inline Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z()}; }
 
 /// Strict JSON (UTF-8, no comments, no repeated field names, nesting up to 100). Throws
 /// InvalidInput with the line, named `name`.

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "normalshop/core/color_map.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/image_file.h"
@@ -12,19 +13,11 @@ namespace {
 
 constexpr std::size_t rows_per_task = 32;
 
-double linear_from_srgb(double s) {
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-}
-
-double srgb_from_linear(double l) {
-  return l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055;
-}
-
 std::vector<float> decoding_table(CodeType type) {
   const int top = type == CodeType::U8 ? 255 : 65535;
   std::vector<float> table(static_cast<std::size_t>(top) + 1);
   for (std::size_t i = 0; i < table.size(); ++i) {
-    table[i] = static_cast<float>(linear_from_srgb(static_cast<double>(i) / top));
+    table[i] = srgb_to_linear(static_cast<float>(i) / static_cast<float>(top));
   }
   return table;
 }
@@ -35,8 +28,8 @@ const std::array<std::uint8_t, 65536>& encoding_table() {
   static const std::array<std::uint8_t, 65536> table = [] {
     std::array<std::uint8_t, 65536> t{};
     for (std::size_t i = 0; i < t.size(); ++i) {
-      const double s = srgb_from_linear(static_cast<double>(i) / 65535.0);
-      t[i] = static_cast<std::uint8_t>(std::lround(255.0 * s));
+      const float s = linear_to_srgb(static_cast<float>(i) / 65535.0F);
+      t[i] = static_cast<std::uint8_t>(std::lround(255.0F * s));
     }
     return t;
   }();
@@ -90,14 +83,6 @@ ColorImage color_from_codes(const RawImage& codes) {
     }
   });
   return image;
-}
-
-ColorImage read_color(const std::filesystem::path& path) {
-  return color_from_codes(read_image(path));
-}
-
-ColorImage read_color(std::span<const std::byte> bytes, std::string_view name) {
-  return color_from_codes(read_image(bytes, name));
 }
 
 MaskImage read_mask(const std::filesystem::path& path) {

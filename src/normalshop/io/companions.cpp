@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <system_error>
 
 #include "normalshop/core/error.h"
@@ -39,8 +38,7 @@ std::string Companions::place(const std::string& reference) const {
 std::string Companions::unused(const std::string& wanted) const {
   const fs::path path(wanted);
   std::string name = wanted;
-  const auto taken = [&](const auto& done) { return done.second == name; };
-  for (int i = 2; std::any_of(done_.begin(), done_.end(), taken); ++i) {
+  for (int i = 2; taken_.contains(name); ++i) {
     const std::string numbered = path.stem().string() + "_" + std::to_string(i);
     name = (path.parent_path() / (numbered + path.extension().string())).generic_string();
   }
@@ -54,13 +52,18 @@ bool Companions::reserved(const fs::path& target) const {
   return false;
 }
 
-std::string Companions::write(const std::string& reference, std::string_view bytes) {
-  std::string name = place(reference);
+void Companions::put(const std::string& name, std::string_view bytes) {
   const fs::path target = folder_ / name;
   std::error_code error;
   fs::create_directories(folder_of(target), error);
   write_file(target, bytes);
   result.files.push_back(target);
+}
+
+std::string Companions::write(const std::string& reference, std::string_view bytes) {
+  std::string name = unused(place(reference));
+  taken_.insert(name);
+  put(name, bytes);
   return name;
 }
 
@@ -70,6 +73,7 @@ std::string Companions::copy(const std::string& reference) {
   const auto known = done_.find(key);
   if (known != done_.end()) return known->second;
   std::string name = unused(place(reference));
+  taken_.insert(name);
   done_[key] = name;
   const fs::path target = folder_ / name;
   std::error_code error;
@@ -79,7 +83,8 @@ std::string Companions::copy(const std::string& reference) {
                            "' is missing, so it is not copied beside the model");
     return name;
   }
-  return write(reference, read_file(from));
+  put(name, read_file(from));
+  return name;
 }
 
 }  // namespace normalshop

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/options.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
@@ -281,12 +283,16 @@ void guess_green(const Slopes& slopes, ConventionGuess& guess) {
   guess.convention.green_down = ratio < 0.0 && guess.green_ratio >= 2.0;
 }
 
-std::string sentence_of(const ConventionGuess& guess) {
+std::string sentence_of(const ConventionGuess& guess, std::optional<NormalSpace> looks_like) {
   const NormalConvention& c = guess.convention;
   std::array<char, 64> number{};
-  std::string text = c.space == NormalSpace::Tangent ? "tangent space" : "object space";
+  std::string text = std::string(name_of(c.space)) + " space";
   std::snprintf(number.data(), number.size(), " (%.0f %% sure)", 100.0 * guess.space_confidence);
-  text += number.data();
+  if (!looks_like) {
+    text += number.data();
+  } else if (*looks_like != c.space) {
+    text += " as given, though it looks like " + std::string(name_of(*looks_like)) + " space";
+  }
   if (c.space == NormalSpace::Tangent && guess.green_ratio >= 2.0) {
     std::snprintf(number.data(), number.size(), "%.1f", std::min(guess.green_ratio, 999.0));
     text += c.green_down ? ", green down (DirectX)" : ", green up (OpenGL)";
@@ -302,7 +308,7 @@ std::string sentence_of(const ConventionGuess& guess) {
 
 }  // namespace
 
-ConventionGuess guess_convention(const RawImage& codes) {
+ConventionGuess guess_convention(const RawImage& codes, std::optional<NormalSpace> known_space) {
   if (codes.empty() || codes.channels() < 2) {
     throw InvalidInput("a normal map needs 2 to 4 channels; this image has " +
                        std::to_string(codes.channels()));
@@ -320,8 +326,17 @@ ConventionGuess guess_convention(const RawImage& codes) {
                      directions.length_min, directions.length_max};
   }
   guess_space(directions, guess);
+  std::optional<NormalSpace> looks_like;
+  if (known_space) {
+    looks_like = std::exchange(guess.convention.space, *known_space);
+    guess.space_confidence = 1.0;
+    // The guess knows no world space: it looks like object space.
+    const bool alike =
+        (*known_space == NormalSpace::Tangent) == (*looks_like == NormalSpace::Tangent);
+    if (alike) looks_like = known_space;
+  }
   if (guess.convention.space == NormalSpace::Tangent) guess_green(slopes, guess);
-  guess.sentence = sentence_of(guess);
+  guess.sentence = sentence_of(guess, looks_like);
   return guess;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "normalshop/core/normal_map.h"
@@ -29,8 +30,10 @@ struct ConventionGuess {
 /// Space from the spread of directions (tangent: nearly all towards +z; object: all over the
 /// sphere), green from the curl, two channels from a missing blue or one that is constant and no
 /// normal's, the code of zero from the code of flat areas, signed floats from negative values.
-/// Reads at most about 1,024 rows. Needs 2 to 4 channels; throws InvalidInput otherwise.
-ConventionGuess guess_convention(const RawImage& codes);
+/// A space that is known already is not guessed, and green is judged with it. Reads at most about
+/// 1,024 rows. Needs 2 to 4 channels; throws InvalidInput otherwise.
+ConventionGuess guess_convention(const RawImage& codes,
+                                 std::optional<NormalSpace> known_space = {});
 
 /// Three or more channels, coloured, and most vectors near unit length: a map of normals rather
 /// than of heights or colours.

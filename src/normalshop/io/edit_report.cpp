@@ -141,7 +141,12 @@ EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
 
 Value report_value(const EditJob& job) {
   Value::Array files;
-  for (const auto& file : job.files) files.emplace_back(file.filename().string());
+  // The report is the last of them, in the folder itself.
+  const std::filesystem::path folder =
+      job.files.empty() ? std::filesystem::path() : job.files.back().parent_path();
+  for (const auto& file : job.files) {
+    files.emplace_back(file.lexically_relative(folder).generic_string());
+  }
   Value::Array notes;
   for (const std::string& note : job.notes) notes.emplace_back(note);
   Value::Object times;

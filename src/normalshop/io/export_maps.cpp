@@ -1,6 +1,7 @@
 #include "normalshop/io/export_maps.h"
 
 #include "normalshop/core/error.h"
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/surface/convert_space.h"
 
@@ -16,14 +17,33 @@ NormalConvention target_convention(const NormalConvention& own,
   to.green_down = *preset == ExportPreset::DirectX;
   const bool renders_two = *preset != ExportPreset::Gltf && to.space == NormalSpace::Tangent;
   if (!renders_two) to.two_channel = false;  // glTF and object space need all three
+  if (to.space != NormalSpace::Tangent) to.scale = 1.0F;
   return to;
 }
 
-std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType type) {
-  const char* extension = opened.sets[set].tiff   ? "_normal.tif"
-                          : type == CodeType::F32 ? "_normal.exr"
-                                                  : "_normal.png";
+std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType type,
+                     const std::optional<ExportPreset>& preset) {
+  const bool png = preset == ExportPreset::Gltf && type != CodeType::F32;
+  const char* extension = opened.sets[set].tiff && !png ? "_normal.tif"
+                          : type == CodeType::F32       ? "_normal.exr"
+                                                        : "_normal.png";
   return opened.model.texture_sets[set].name + extension;
+}
+
+/// What glTF viewers will make nothing, or something else, of.
+void note_for_viewers(const std::string& name, CodeType type, const NormalConvention& convention,
+                      std::vector<std::string>& notes) {
+  if (!name.ends_with(".png")) {
+    notes.push_back(name + ": glTF viewers read only PNG and JPEG; use " +
+                    (type == CodeType::F32 ? "--bits 8 or 16" : "--preset gltf") + " for them");
+  }
+  if (convention.space == NormalSpace::Tangent && !convention.green_down &&
+      !convention.two_channel) {
+    return;
+  }
+  notes.push_back(name +
+                  ": glTF viewers take maps as tangent space, green up, in three channels; " +
+                  "use --preset gltf for them");
 }
 
 /// The map that an edit starts from stays as it is.
@@ -45,18 +65,22 @@ std::vector<std::filesystem::path> write_maps(const OpenedDocument& opened,
                                               const Progress& progress) {
   std::vector<std::filesystem::path> files;
   for (std::size_t i = 0; i < opened.sets.size(); ++i) {
-    const CodeType type = options.type.value_or(opened.sets[i].type);
-    const std::string name = map_name(opened, i, type);
+    const OpenedSet& set = opened.sets[i];
+    const NormalMap& map = opened.document.storage().sets[i].normals;
+    // A flat map that was only made to be edited adds nothing.
+    if (set.normal_map.empty() && !map.has_edits()) continue;
+    const CodeType type = options.type.value_or(set.type);
+    const std::string name = map_name(opened, i, type, options.preset);
     check_not_input(opened, staged.folder() / name);
     progress.at(0.0, "encoding maps");
     const RawImage codes = export_map(opened, i, options);
     progress.at(0.5, "writing maps");
-    write_image(staged.path() / name, codes);
+    write_image(staged.path() / name, codes,
+                {.half_float = set.half_float && !options.type && name.ends_with(".exr")});
     files.push_back(staged.path() / name);
-    references[i] = {name, opened.sets[i].scale_applied};
-    if (type == CodeType::F32 && opened.model.path.extension() != ".obj") {
-      notes.push_back(name + ": glTF viewers read only PNG and JPEG; use --bits 8 or 16 for them");
-    }
+    const NormalConvention convention = target_convention(map.convention(), options.preset);
+    references[i] = {name, convention.scale != opened.model.texture_sets[i].normal_scale};
+    if (extension_of(opened.model.path) != ".obj") note_for_viewers(name, type, convention, notes);
   }
   return files;
 }

@@ -1,5 +1,7 @@
 #include "normalshop/io/file_assets.h"
 
+#include <algorithm>
+
 #include "normalshop/core/error.h"
 #include "normalshop/core/normal_map.h"
 #include "normalshop/core/slope.h"
@@ -38,7 +40,9 @@ Patch FileAssets::patch(const std::string& file) {
     for (int x = 0; x < map.width(); ++x) {
       const Vec3f n = map.normal(x, y);
       patch.slopes(x, y) = n.isZero() ? Vec2f(0.0F, 0.0F) : slope_from_normal(n);
-      if (alpha) patch.opacity(x, y) = map.codes().code(x, y, 3) / opaque;
+      if (!alpha) continue;
+      const float a = map.codes().code(x, y, 3) / opaque;
+      patch.opacity(x, y) = a > 0.0F ? std::min(a, 1.0F) : 0.0F;  // NaN becomes 0
     }
   }
   return patch;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -6,6 +7,9 @@
 namespace normalshop::gltf {
 
 namespace {
+
+/// A few bytes of JSON must not ask for gigabytes of zeros.
+constexpr std::size_t largest_without_data = std::size_t{1} << 20;
 
 const std::byte* at(const File& file, const Layout& layout, std::size_t element) {
   return reinterpret_cast<const std::byte*>(file.buffers[layout.buffer].data()) + layout.offset +
@@ -159,6 +163,10 @@ Accessor accessor(const File& file, std::size_t index, std::size_t max_count) {
     a.data =
         layout_at(file, json, where, a.count,
                   component_size(a.component_type) * static_cast<std::size_t>(a.components), true);
+  }
+  if (!a.has_data && a.count > largest_without_data) {
+    fail(file, where + ".count is " + std::to_string(a.count) + ", but it has no bufferView; " +
+                   "accepted are then at most " + std::to_string(largest_without_data));
   }
   read_sparse(file, json, where, a);
   return a;

@@ -1,5 +1,6 @@
 #include "normalshop/io/gltf_export.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>

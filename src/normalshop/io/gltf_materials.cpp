@@ -1,8 +1,10 @@
 #include "normalshop/io/detail/gltf_materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/detail/model_source.h"
 #include "normalshop/io/detail/uri.h"
 
@@ -18,10 +20,23 @@ std::string name_of_material(int material) {
   return material < 0 ? "no material" : indexed("materials", static_cast<std::size_t>(material));
 }
 
-bool is_ktx2(const Json& image) {
+/// Name of a format that glTF extensions bring and that is not read here, or nullptr.
+const char* unread_format(const Json& image) {
+  struct Format {
+    const char* name;
+    const char* mime;
+    const char* extension;
+  };
+  static constexpr std::array<Format, 3> formats{{{"KTX2", "image/ktx2", ".ktx2"},
+                                                  {"WebP", "image/webp", ".webp"},
+                                                  {"DDS", "image/vnd-ms.dds", ".dds"}}};
   const std::string uri = string_at(image, "uri");
-  return string_at(image, "mimeType") == "image/ktx2" || uri.ends_with(".ktx2") ||
-         uri.starts_with("data:image/ktx2");
+  for (const Format& format : formats) {
+    const bool embedded = uri.starts_with(std::string("data:") + format.mime);
+    const bool named = !is_data_uri(uri) && extension_of(percent_decoded(uri)) == format.extension;
+    if (embedded || named || string_at(image, "mimeType") == format.mime) return format.name;
+  }
+  return nullptr;
 }
 
 UvTransform transform_at(const File& file, const Json& json, const std::string& where) {
@@ -106,14 +121,12 @@ std::optional<MapSource> MaterialTable::source_of(const Texture& texture) {
   const std::string where = indexed("images", texture.image);
   const std::string uri = string_at(image, "uri");
   MapSource source;
-  source.uv_set = texture.uv.set;
-  source.scale = texture.scale;
-  source.mime = string_at(image, "mimeType");
   source.name = !uri.empty() && !is_data_uri(uri)   ? percent_decoded(uri)
                 : !string_at(image, "name").empty() ? string_at(image, "name")
                                                     : where;
-  if (is_ktx2(image)) {
-    note("'" + source.name + "' is a KTX2 image without a PNG or JPEG beside it, so it is left " +
+  if (const char* format = unread_format(image)) {
+    note("'" + source.name + "' is a " + format +
+         " image without a PNG or JPEG beside it, so it is left " +
          "out; give the map as PNG, JPEG, TIFF, OpenEXR or TGA");
     return std::nullopt;
   }
@@ -122,7 +135,6 @@ std::optional<MapSource> MaterialTable::source_of(const Texture& texture) {
     if (!data) fail(file_, where + ".uri is a damaged data URI");
     const auto bytes = std::as_bytes(std::span(data->bytes));
     source.bytes.assign(bytes.begin(), bytes.end());
-    source.mime = data->mime;
     return source;
   }
   if (!uri.empty()) {
@@ -174,10 +186,11 @@ std::size_t MaterialTable::make(int material) {
   const Textures textures = textures_of(material);
   const auto& [normal, albedo] = textures;
   const UvChoice uv = textures.uv();
-  const std::string key = (normal   ? "n:" + identity(normal->image)
-                           : albedo ? "a:" + identity(albedo->image)
-                                    : "material:" + std::to_string(material)) +
-                          key_of(uv);
+  const std::string key =
+      (normal   ? "n:" + identity(normal->image) + "|" + std::to_string(normal->scale)
+       : albedo ? "a:" + identity(albedo->image)
+                : "material:" + std::to_string(material)) +
+      key_of(uv);
   const auto known = std::find(keys_.begin(), keys_.end(), key);
   if (known != keys_.end()) {
     const auto set = static_cast<std::size_t>(known - keys_.begin());
@@ -190,6 +203,7 @@ std::size_t MaterialTable::make(int material) {
   const std::string name = string_at(json, "name");
   set.name = file_safe_name(name.empty() ? stem : name, model_.texture_sets);
   read_factor(json, name_of_material(material), set.albedo_factor);
+  if (normal) set.normal_scale = normal->scale;
   if (normal) set.normal_map = source_of(*normal);
   const bool same_uv = albedo && key_of(albedo->uv) == key_of(uv);
   if (albedo && same_uv) set.albedo = source_of(*albedo);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
@@ -8,6 +10,7 @@
 #include "normalshop/io/detail/gltf_file.h"
 #include "normalshop/io/detail/gltf_materials.h"
 #include "normalshop/io/detail/model_source.h"
+#include "normalshop/surface/tangents.h"
 
 namespace normalshop {
 
@@ -53,6 +56,9 @@ class Reader {
         materials_(file, model),
         nodes_(array_at(file, file.json, "nodes")),
         meshes_(array_at(file, file.json, "meshes")) {}
+
+  /// Primitives whose TANGENT is replaced by computed tangents, once read() is done.
+  const std::set<PrimitiveIndex>& replaced_tangents() const { return replaced_tangents_; }
 
   void read() {
     check_extensions(file_);
@@ -182,6 +188,7 @@ class Reader {
     }
     const Json& primitives = array_at(file_, meshes_[mesh], "primitives");
     for (std::size_t i = 0; i < primitives.size(); ++i) {
+      primitive_ = {mesh, i};
       read_primitive(primitives[i],
                      "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(i) + "]",
                      placed);
@@ -303,7 +310,8 @@ class Reader {
       mesh.positions.push_back(p.cast<float>());
     }
     if (normals.empty()) model_.has_normals = false;
-    if (tangents.empty()) tangents_everywhere_ = false;
+    const bool own_tangents = keeps_tangents(corners, normals, tangents, linear);
+    (own_tangents ? some_tangents_ : some_without_tangents_) = true;
     add_node(for_normals, corners.size() / 3);
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
       const std::array<std::uint32_t, 3> order = {corners[t], corners[t + (mirrored ? 2 : 1)],
@@ -316,10 +324,23 @@ class Reader {
         mesh.uvs.push_back(uv_transform.apply(uv));
         mesh.normals.push_back(normals.empty() ? Vec3f(Vec3f::Zero())
                                                : unit(for_normals * vec3(normals, 3 * v)));
-        mesh.tangents.push_back(tangents.empty() ? Vec4f(Vec4f::Zero())
-                                                 : tangent(tangents, v, linear, mirrored));
+        mesh.tangents.push_back(own_tangents ? tangent(tangents, v, linear, mirrored)
+                                             : Vec4f(Vec4f::Zero()));
       }
     }
+  }
+
+  /// glTF: without normals in the file its tangents do not count. Zeros would show differently in
+  /// every program, so one of them makes the part's tangents computed ones.
+  bool keeps_tangents(const std::vector<std::uint32_t>& corners, const std::vector<float>& normals,
+                      const std::vector<float>& tangents, const Eigen::Matrix3d& linear) {
+    if (tangents.empty()) return false;
+    const bool usable = !options_.flip_v && !normals.empty() &&
+                        std::none_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+                          return unit(linear * vec3(tangents, 4 * v)).isZero();
+                        });
+    if (!usable) replaced_tangents_.insert(primitive_);
+    return usable;
   }
 
   /// The frame of these triangles' object-space normals; its size does not matter.
@@ -354,19 +375,24 @@ class Reader {
     fill_normals(model_.mesh);
   }
 
-  /// glTF: without normals in the file its tangents do not count.
   void finish_tangents() {
-    Mesh& mesh = model_.mesh;
-    const bool usable = std::none_of(mesh.tangents.begin(), mesh.tangents.end(),
-                                     [](const Vec4f& t) { return t.head<3>().isZero(); });
-    model_.has_tangents = tangents_everywhere_ && model_.has_normals && usable && !options_.flip_v;
-    if (model_.has_tangents) return;
-    if (tangents_everywhere_) {
+    if (!replaced_tangents_.empty()) {
       note(options_.flip_v ? "the file's tangents are replaced, as V is flipped"
-                           : "the file's tangents are replaced, as some are zero or its normals "
+                           : "the file's tangents are replaced where some are zero or its normals "
                              "are missing");
     }
+    Mesh& mesh = model_.mesh;
+    model_.some_tangents = some_tangents_;
+    model_.has_tangents = some_tangents_ && !some_without_tangents_;
+    if (model_.has_tangents) return;
+    std::vector<Vec4f> own = std::move(mesh.tangents);
     mesh.tangents.clear();
+    if (!some_tangents_) return;
+    note("tangents are computed (MikkTSpace) for the parts without");
+    compute_tangents(mesh);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (!own[i].isZero()) mesh.tangents[i] = own[i];
+    }
   }
 
   const File& file_;
@@ -376,7 +402,10 @@ class Reader {
   const Json& nodes_;
   const Json& meshes_;
   std::size_t skipped_no_uv_ = 0;
-  bool tangents_everywhere_ = true;
+  PrimitiveIndex primitive_;  ///< that is being read
+  std::set<PrimitiveIndex> replaced_tangents_;
+  bool some_tangents_ = false;
+  bool some_without_tangents_ = false;
 };
 
 }  // namespace
@@ -386,13 +415,15 @@ Model parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
   File file = gltf::parse(bytes, path);
   Model model;
   model.path = path;
-  Reader(file, options, model).read();
+  Reader reader(file, options, model);
+  reader.read();
   auto source = std::make_shared<ModelSource>();
   source->format = file.binary ? ModelFormat::Glb : ModelFormat::Gltf;
   source->folder = file.folder;
   source->text = std::move(file.text);
   source->buffers = std::move(file.buffers);
   source->flip_v = options.flip_v;
+  source->replaced_tangents = reader.replaced_tangents();
   model.source = std::move(source);
   return model;
 }

@@ -49,6 +49,7 @@ class Writer {
 
   WrittenModel write() {
     if (model_.source->flip_v) flip_uvs();
+    erase_tangents();
     for (const auto& [set, reference] : normal_maps_) set_normal_map(set, reference);
     place_buffers();
     place_images();
@@ -113,6 +114,19 @@ class Writer {
     for (Json& mesh : file_.json["meshes"]) {
       if (!mesh.contains("primitives")) continue;
       for (Json& primitive : mesh["primitives"]) action(primitive);
+    }
+  }
+
+  /// The maps were edited in the frames that take their place.
+  void erase_tangents() {
+    bool erased = false;
+    for (const auto& [mesh, primitive] : model_.source->replaced_tangents) {
+      Json& attributes = file_.json["meshes"][mesh]["primitives"][primitive]["attributes"];
+      erased = attributes.erase("TANGENT") > 0 || erased;
+    }
+    if (erased) {
+      note("tangents that were replaced are left out of '" + path_.filename().string() +
+           "', so that every program computes the same");
     }
   }
 

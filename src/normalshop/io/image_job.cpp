@@ -4,6 +4,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/edit_report.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/staged_folder.h"
@@ -31,8 +32,10 @@ void write_normals(const ImageJob& job, const ImageExport& target) {
   const NormalMap& normals = job.opened.document.normals();
   NormalConvention convention = normals.convention();
   convention.green_down = target.green_down.value_or(convention.green_down);
+  const bool half = job.opened.half_float && !target.type && extension_of(target.normals) == ".exr";
   write_image(target.normals,
-              normals.encode(target.type.value_or(normals.codes().type()), convention));
+              normals.encode(target.type.value_or(normals.codes().type()), convention),
+              {.half_float = half});
 }
 
 void write_all(ImageJob& job, const ImageExport& target) {
@@ -45,9 +48,7 @@ void write_all(ImageJob& job, const ImageExport& target) {
 
 /// The input's name, with an extension that can hold the codes without loss.
 std::filesystem::path lossless_name(const std::filesystem::path& input, CodeType type) {
-  std::string extension = input.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(input);
   const bool tiff = extension == ".tif" || extension == ".tiff";
   std::filesystem::path name = input.filename();
   if (tiff || (extension == ".tga" && type == CodeType::U8)) return name;

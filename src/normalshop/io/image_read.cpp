@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -208,7 +209,7 @@ RawImage read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, std::
   return whole;
 }
 
-RawImage decode(Bytes bytes, std::string_view name) {
+RawImage decode(Bytes bytes, std::string_view name, ImageTraits* traits) {
   const char* format = format_of(bytes);
   if (bytes.empty()) throw IoError("the image " + quoted(name) + " is empty");
   if (format == nullptr) {
@@ -233,14 +234,17 @@ RawImage decode(Bytes bytes, std::string_view name) {
     throw InvalidInput("the image " + quoted(name) +
                        " is a volume or deep; accepted are flat ones");
   }
+  if (traits != nullptr) {
+    *traits = {std::string_view(format) == "tiff", spec.format == OIIO::TypeDesc::HALF};
+  }
   return read_pixels(*input, spec, format, bytes, name);
 }
 
 }  // namespace
 
-RawImage read_image(std::span<const std::byte> bytes, std::string_view name) {
+RawImage read_image(std::span<const std::byte> bytes, std::string_view name, ImageTraits* traits) {
   try {
-    return decode(bytes, name);
+    return decode(bytes, name, traits);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
@@ -248,9 +252,9 @@ RawImage read_image(std::span<const std::byte> bytes, std::string_view name) {
   }
 }
 
-RawImage read_image(const std::filesystem::path& path) {
+RawImage read_image(const std::filesystem::path& path, ImageTraits* traits) {
   const std::string bytes = read_file(path);
-  return read_image(std::as_bytes(std::span(bytes)), path.string());
+  return read_image(std::as_bytes(std::span(bytes)), path.string(), traits);
 }
 
 }  // namespace normalshop

@@ -7,6 +7,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/detail/model_source.h"
 #include "normalshop/surface/vertex_normals.h"
 
@@ -15,12 +16,6 @@ namespace normalshop {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 }  // namespace
 
@@ -35,7 +30,7 @@ std::string file_safe_name(const std::string& wanted, const std::vector<TextureS
   // Names that differ by case alone are one file on some systems.
   const auto taken = [&](const std::string& candidate) {
     return std::any_of(others.begin(), others.end(), [&](const TextureSet& other) {
-      return lower(other.name) == lower(candidate);
+      return lower_case(other.name) == lower_case(candidate);
     });
   };
   std::string unique = name;
@@ -54,7 +49,7 @@ void fill_normals(Mesh& mesh) {
 }
 
 Model read_model(const fs::path& path, const ModelReadOptions& options) {
-  const std::string extension = lower(path.extension().string());
+  const std::string extension = extension_of(path);
   if (extension != ".gltf" && extension != ".glb" && extension != ".obj") {
     throw InvalidInput("'" + path.string() + "' is no model of a known kind; accepted are .gltf, " +
                        ".glb and .obj");
@@ -71,7 +66,7 @@ WrittenModel write_model(const Model& model, const fs::path& path,
   const std::string wanted = format == ModelFormat::Obj   ? ".obj"
                              : format == ModelFormat::Glb ? ".glb"
                                                           : ".gltf";
-  if (lower(path.extension().string()) != wanted) {
+  if (extension_of(path) != wanted) {
     throw InvalidInput("cannot write '" + path.string() + "': the model is written back as " +
                        wanted + ", the format it came in");
   }

@@ -20,16 +20,14 @@ struct MapSource {
   std::string name;              ///< for messages
   std::filesystem::path path;    ///< file beside the model; it may be missing
   std::vector<std::byte> bytes;  ///< image embedded in the model file
-  std::string mime;              ///< "image/png", ...; empty when not stated
-  int uv_set = 0;
-  float scale = 1.0F;  ///< of a glTF normal texture: multiplies x and y of its normals
 };
 
-/// Triangles that share one atlas: all materials with the same normal image (or, where none has
-/// one, the same colour image) and the same UVs. Its index is Mesh::texture_sets' value.
+/// Triangles that share one atlas: all materials with the same normal image and scale (or, where
+/// none has one, the same colour image) and the same UVs. Its index is Mesh::texture_sets' value.
 struct TextureSet {
   std::string name;  ///< safe as a file name, different from the others'
   std::optional<MapSource> normal_map;
+  float normal_scale = 1.0F;  ///< glTF: multiplies x and y of the normals
   std::optional<MapSource> albedo;
   Vec3f albedo_factor = Vec3f::Ones();  ///< linear RGB, multiplies the albedo
   std::vector<int> materials;           ///< of the file; -1 stands for "no material"
@@ -43,7 +41,9 @@ struct Model {
   std::vector<std::string> notes;  ///< sentences: what was guessed or ignored
   std::filesystem::path path;
   bool has_normals = true;    ///< in the file for all faces; else computed where missing
-  bool has_tangents = false;  ///< in the file for all faces; else mesh.tangents is empty
+  bool has_tangents = false;  ///< in the file for all faces
+  /// In the file for some faces; the others' are computed. Without any, mesh.tangents is empty.
+  bool some_tangents = false;
   /// The file's own content, for writing it back.
   std::shared_ptr<const ModelSource> source;
 };
@@ -69,7 +69,7 @@ Model parse_obj(std::span<const std::byte> bytes, const std::filesystem::path& p
 /// A texture set's new normal map, as the written model refers to it.
 struct NormalMapReference {
   std::string file;            ///< path relative to the written model, "/" between folders
-  bool scale_applied = false;  ///< the map holds MapSource::scale already: the model's becomes 1
+  bool scale_applied = false;  ///< the map holds normal_scale already: the model's becomes 1
 };
 
 struct WrittenModel {
@@ -78,10 +78,11 @@ struct WrittenModel {
 };
 
 /// Writes the model with new normal maps. Everything else stays as the file has it: nodes, meshes,
-/// vertex order, faces, materials, extras. Buffers, materials and textures that the model refers to
-/// are copied beside it, except over files in `normal_maps`, which the caller writes. A model read
-/// with flip_v is written with v flipped in its UVs, so that it shows right elsewhere; its maps are
-/// not flipped. The extension must be the source's. Throws InvalidInput or IoError.
+/// vertex order, faces, materials, extras; only tangents go that were not used. Buffers, materials
+/// and textures that the model refers to are copied beside it, except over files in `normal_maps`,
+/// which the caller writes. A model read with flip_v is written with v flipped in its UVs, so that
+/// it shows right elsewhere; its maps are not flipped. The extension must be the source's. Throws
+/// InvalidInput or IoError.
 WrittenModel write_model(const Model& model, const std::filesystem::path& path,
                          const std::map<std::size_t, NormalMapReference>& normal_maps);
 

@@ -1,8 +1,8 @@
 #include "normalshop/io/model_info.h"
 
 #include <algorithm>
-#include <cctype>
 
+#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/open_document.h"
 #include "normalshop/surface/seams.h"
@@ -11,8 +11,6 @@
 namespace normalshop {
 
 namespace {
-
-Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z()}; }
 
 Value guess_value(const ConventionGuess& guess) {
   return Value::Object{{"sentence", guess.sentence},
@@ -70,10 +68,10 @@ Value set_info(const OpenedDocument& opened, const Seams& seams, std::size_t i) 
   return out;
 }
 
-Value model_info(const std::filesystem::path& file, bool flip_v) {
+Value model_info(const std::filesystem::path& file, const ModelReadOptions& reading) {
   OpenOptions options;
   options.model = file;
-  options.flip_v = flip_v;
+  options.flip_v = reading.flip_v;
   const OpenedDocument opened = open_document(options);
   const Mesh& mesh = opened.document.mesh();
   const Seams seams = find_seams(mesh);
@@ -88,7 +86,9 @@ Value model_info(const std::filesystem::path& file, bool flip_v) {
                        {"low", vec3_value(box.low)},
                        {"high", vec3_value(box.high)},
                        {"normals", opened.model.has_normals ? "from the file" : "computed"},
-                       {"tangents", opened.model.has_tangents ? "from the file" : "MikkTSpace"},
+                       {"tangents", opened.model.has_tangents    ? "from the file"
+                                    : opened.model.some_tangents ? "from the file and MikkTSpace"
+                                                                 : "MikkTSpace"},
                        {"seam edges", seams.edges.size()},
                        {"open edges", seams.open_edges.size()},
                        {"irregular edges", seams.irregular_edges.size()},
@@ -98,12 +98,10 @@ Value model_info(const std::filesystem::path& file, bool flip_v) {
 
 }  // namespace
 
-Value file_info(const std::filesystem::path& file, bool flip_v) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+Value file_info(const std::filesystem::path& file, const ModelReadOptions& reading) {
+  const std::string extension = extension_of(file);
   const bool model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
-  return model ? model_info(file, flip_v) : image_info(file);
+  return model ? model_info(file, reading) : image_info(file);
 }
 
 }  // namespace normalshop

@@ -3,11 +3,12 @@
 #include <filesystem>
 
 #include "normalshop/document/value.h"
+#include "normalshop/io/model.h"
 
 namespace normalshop {
 
 /// What a model (meshes, texture sets, charts, seams, overlaps, texel density, guessed conventions)
 /// or an image is, for people and programs. Throws IoError or InvalidInput.
-Value file_info(const std::filesystem::path& file, bool flip_v = false);
+Value file_info(const std::filesystem::path& file, const ModelReadOptions& reading = {});
 
 }  // namespace normalshop

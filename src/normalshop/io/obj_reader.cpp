@@ -28,7 +28,7 @@ class ObjReader {
       : text_(text), options_(options), model_(model), source_(source) {}
 
   void read() {
-    for_each_obj_line(text_, [&](std::size_t number, std::string_view line) {
+    for_each_obj_line(text_, [&](std::size_t number, std::string_view line, std::string_view) {
       line_ = number;
       read_line(line);
     });
@@ -48,6 +48,7 @@ class ObjReader {
     }
     fill_normals(model_.mesh);
     read_libraries();
+    cut_comments();
     merge_sets();
   }
 
@@ -214,19 +215,32 @@ class ObjReader {
         std::string error;
         std::vector<tinyobj::material_t> list;
         tinyobj::LoadMtl(&by_name, &list, &stream, &warning, &error);
-        for (auto& material : list) materials_.emplace_back(std::move(material), name);
+        for (auto& material : list) {
+          material.name = std::string(trimmed(material.name));
+          source_.defined_materials.insert(material.name);
+          materials_.emplace_back(std::move(material), name);
+        }
       } catch (const IoError& error) {
         model_.notes.push_back(std::string(error.what()) + "; its materials are left out");
       }
     }
   }
 
-  std::optional<MapSource> map_source(const std::string& name, const std::string& library) const {
+  /// "usemtl skin # 2" names "skin" where the libraries have that alone.
+  void cut_comments() {
+    for (std::string& name : source_.material_names) {
+      if (source_.defined_materials.contains(name)) continue;
+      const std::string cut(trimmed(std::string_view(name).substr(0, name.find('#'))));
+      if (source_.defined_materials.contains(cut)) name = cut;
+    }
+  }
+
+  std::optional<MapSource> map_source(const std::string& text, const std::string& library) const {
+    const std::string name = obj_path(std::string(trimmed(text)));
     if (name.empty()) return std::nullopt;
     MapSource source;
-    source.name = obj_path(name);
-    source.path =
-        source_.folder / std::filesystem::path(obj_path(library)).parent_path() / obj_path(name);
+    source.name = name;
+    source.path = source_.folder / std::filesystem::path(obj_path(library)).parent_path() / name;
     return source;
   }
 

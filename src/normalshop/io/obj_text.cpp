@@ -20,6 +20,11 @@ std::string_view next_word(std::string_view& line) {
   return word;
 }
 
+bool holds_name(std::string_view statement) {
+  const std::string_view key = next_word(statement);
+  return key == "usemtl" || key == "mtllib";
+}
+
 std::string obj_path(std::string name) {
   for (char& c : name) {
     if (c == '\\') c = '/';
@@ -37,6 +42,8 @@ std::vector<std::string> obj_libraries(const ModelSource& source) {
     }
     std::string_view rest = line;
     for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
+      const fs::path file = source.folder / obj_path(std::string(word));
+      if (word.starts_with('#') && !fs::is_regular_file(file, ignored)) break;
       names.push_back(obj_path(std::string(word)));
     }
   }

@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -25,11 +29,10 @@ class ObjWriter {
         companions_(source_, path, normal_maps) {
     for (const auto& [set, reference] : normal_maps) {
       for (const int material : model.texture_sets[set].materials) {
-        const std::string name = material < 0
-                                     ? model.texture_sets[set].name
-                                     : source_.material_names[static_cast<std::size_t>(material)];
-        normal_of_[name] = reference.file;
-        if (material < 0) unnamed_ = name;
+        if (material < 0) unnamed_ = unused_name(model.texture_sets[set].name);
+        normal_of_[material < 0 ? unnamed_
+                                : source_.material_names[static_cast<std::size_t>(material)]] =
+            reference.file;
       }
     }
   }
@@ -50,15 +53,16 @@ class ObjWriter {
   }
 
  private:
-  /// Lines with their ends, so that they can be copied byte by byte.
-  template <class Visitor>
-  static void for_each_raw_line(std::string_view text, Visitor&& visit) {
-    while (!text.empty()) {
-      const std::size_t end = text.find('\n');
-      const std::size_t size = end == text.npos ? text.size() : end + 1;
-      visit(text.substr(0, size));
-      text.remove_prefix(size);
+  /// For the faces without a material.
+  std::string unused_name(const std::string& wanted) const {
+    const auto& used = source_.material_names;
+    std::string name = wanted;
+    for (int i = 2; source_.defined_materials.contains(name) ||
+                    std::find(used.begin(), used.end(), name) != used.end();
+         ++i) {
+      name = wanted + "_" + std::to_string(i);
     }
+    return name;
   }
 
   std::string model_text(const std::string& library) const {
@@ -71,36 +75,58 @@ class ObjWriter {
       named_library = true;
     };
     if (source_.libraries.empty()) insert_library();
-    for_each_raw_line(source_.text, [&](std::string_view line) {
-      std::string_view rest = line;
-      const std::string_view key = next_word(rest);
+    for_each_obj_line(source_.text, [&](std::size_t, std::string_view line, std::string_view raw) {
+      const std::string_view key = next_word(line);
       if (key == "mtllib") return insert_library();
-      if (key == "usemtl") in_material = true;
+      if (key == "usemtl") in_material = !trimmed(line).empty();
       if (key == "f" && !in_material && !unnamed_.empty()) {
         out += "usemtl " + unnamed_ + "\n";
         in_material = true;
       }
-      if (key == "vt" && source_.flip_v) {
-        out += flipped(rest);
+      if (key != "vt" || !source_.flip_v) {
+        out += raw;
         return;
       }
-      out += line;
+      out += flipped(raw);
     });
     return out;
   }
 
-  /// "vt u v" with 1 - v; the shortest digits that give the same float.
-  static std::string flipped(std::string_view rest) {
-    const std::string_view end_of_line = rest.ends_with("\r\n") ? "\r\n" : "\n";
-    rest = trimmed(rest.substr(0, std::min(rest.find('#'), rest.find('\n'))));
-    const std::string u(next_word(rest));
-    std::string_view word = next_word(rest);
-    if (word.starts_with('+')) word.remove_prefix(1);
+  /// The statement with spaces for what are no words: comments, "\" and the ends of its lines.
+  static std::string words_alone(std::string_view raw) {
+    std::string words(raw);
+    for (std::size_t at = 0; at < words.size();) {
+      const std::size_t end = std::min(words.find('\n', at), words.size());
+      const std::size_t comment = std::min(words.find('#', at), end);
+      std::fill(words.begin() + static_cast<std::ptrdiff_t>(comment),
+                words.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+      const std::size_t last = words.find_last_not_of(" \t\r\f\v", end == 0 ? 0 : end - 1);
+      if (last != std::string::npos && last >= at && words[last] == '\\') words[last] = ' ';
+      if (end < words.size()) words[end] = ' ';
+      at = end + 1;
+    }
+    return words;
+  }
+
+  /// "vt u v" with 1 - v, the shortest digits that give the same float; all else as it is.
+  static std::string flipped(std::string_view raw) {
+    const std::string words = words_alone(raw);
+    std::string_view rest = words;
+    next_word(rest);
+    const std::string_view u = next_word(rest);
+    const std::string_view word = next_word(rest);
+    std::string_view number = word;
+    if (number.starts_with('+')) number.remove_prefix(1);
     float v = 0.0F;
-    std::from_chars(word.data(), word.data() + word.size(), v);
+    std::from_chars(number.data(), number.data() + number.size(), v);
     std::array<char, 32> digits{};
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), 1.0F - v).ptr;
-    return "vt " + u + " " + std::string(digits.data(), end) + std::string(end_of_line);
+    const std::string text(digits.data(), end);
+    std::string out(raw);
+    if (!word.empty()) {
+      return out.replace(static_cast<std::size_t>(word.data() - words.data()), word.size(), text);
+    }
+    return out.insert(static_cast<std::size_t>(u.data() + u.size() - words.data()), " " + text);
   }
 
   /// All libraries in one, `norm` of the edited materials replaced.
@@ -115,9 +141,9 @@ class ObjWriter {
         companions_.result.notes.push_back(error.what());
         continue;
       }
-      copy_textures(text, fs::path(name).parent_path());
+      const auto renamed = copy_textures(text, fs::path(name).parent_path());
       if (!out.empty() && out.back() != '\n') out += '\n';
-      append_library(text, out, written);
+      append_library(text, renamed, out, written);
     }
     if (!out.empty() && out.back() != '\n') out += '\n';
     for (const auto& [name, file] : normal_of_) {
@@ -131,7 +157,21 @@ class ObjWriter {
     return out;
   }
 
-  void append_library(const std::string& text, std::string& out, std::set<std::string>& written) {
+  /// Lines with their ends, so that they can be copied byte by byte.
+  template <class Visitor>
+  static void for_each_raw_line(std::string_view text, Visitor&& visit) {
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      const std::size_t size = end == text.npos ? text.size() : end + 1;
+      visit(text.substr(0, size));
+      text.remove_prefix(size);
+    }
+  }
+
+  using Renamed = std::map<std::string, std::string>;
+
+  void append_library(const std::string& text, const Renamed& renamed, std::string& out,
+                      std::set<std::string>& written) {
     std::string material;
     const auto finish = [&] {
       const auto normal = normal_of_.find(material);
@@ -147,7 +187,7 @@ class ObjWriter {
         material = std::string(trimmed(rest.substr(0, rest.find_first_of("\r\n"))));
       }
       if (normal_of_.contains(material) && replaces(material, key)) return;
-      out += line;
+      out += is_texture(key) ? with_new_name(line, renamed) : std::string(line);
     });
     finish();
   }
@@ -167,28 +207,53 @@ class ObjWriter {
     return false;
   }
 
-  void copy_textures(const std::string& text, const fs::path& folder) {
+  static bool is_texture(std::string_view key) {
+    return key.starts_with("map_") || key == "bump" || key == "norm" || key == "disp" ||
+           key == "refl" || key == "decal";
+  }
+
+  /// A texture's name is the end of its line, behind the options.
+  static std::string with_new_name(std::string_view line, const Renamed& renamed) {
+    const std::size_t end = line.find_last_not_of(" \t\r\n\f\v") + 1;
+    const std::pair<const std::string, std::string>* found = nullptr;
+    for (const auto& entry : renamed) {
+      const std::string& old = entry.first;
+      const bool fits = line.substr(0, end).ends_with(old) && end > old.size() &&
+                        std::isspace(static_cast<unsigned char>(line[end - old.size() - 1])) != 0;
+      if (fits && (found == nullptr || old.size() > found->first.size())) found = &entry;
+    }
+    std::string out(line);
+    if (found != nullptr) {
+      out.replace(end - found->first.size(), found->first.size(), found->second);
+    }
+    return out;
+  }
+
+  /// Copies a library's textures. Returns those that the written library must name otherwise.
+  Renamed copy_textures(const std::string& text, const fs::path& folder) {
     std::istringstream stream(text);
     std::map<std::string, int> by_name;
     std::vector<tinyobj::material_t> list;
     std::string warning;
     std::string error;
     tinyobj::LoadMtl(&by_name, &list, &stream, &warning, &error);
+    Renamed renamed;
     for (const auto& m : list) {
       for (const std::string* name :
            {&m.ambient_texname, &m.diffuse_texname, &m.specular_texname,
             &m.specular_highlight_texname, &m.bump_texname, &m.displacement_texname,
             &m.alpha_texname, &m.reflection_texname, &m.roughness_texname, &m.metallic_texname,
             &m.sheen_texname, &m.emissive_texname, &m.normal_texname}) {
-        if (name->empty()) continue;
-        const std::string reference =
-            (folder / obj_path(*name)).lexically_normal().generic_string();
-        if (companions_.copy(reference) != obj_path(*name)) {
-          companions_.result.notes.push_back("'" + *name + "' lies beside the model now; the " +
-                                             "material still names its old place");
+        const std::string old(trimmed(*name));
+        if (old.empty()) continue;
+        const fs::path path = obj_path(old);
+        std::string placed = companions_.copy((folder / path).lexically_normal().generic_string());
+        if (placed != path.lexically_normal().generic_string()) {
+          renamed[old] = std::move(placed);
         }
       }
     }
+    return renamed;
   }
 
   const Model& model_;

@@ -57,9 +57,13 @@ std::vector<std::optional<MapSource>> given_maps(const std::vector<std::string>&
   return out;
 }
 
-RawImage read_source(const MapSource& source) {
-  return source.bytes.empty() ? read_image(source.path) : read_image(source.bytes, source.name);
+RawImage read_source(const MapSource& source, ImageTraits* traits = nullptr) {
+  return source.bytes.empty() ? read_image(source.path, traits)
+                              : read_image(source.bytes, source.name, traits);
 }
+
+/// A scale that codes can be read with; maps of others are multiplied by it.
+bool codes_bear(float scale) { return std::abs(scale) >= 0.25F && std::abs(scale) <= 4.0F; }
 
 /// x and y of every normal times the model's scale (glTF normalTexture.scale).
 NormalMap apply_scale(const NormalMap& map, float scale) {
@@ -74,11 +78,12 @@ NormalMap apply_scale(const NormalMap& map, float scale) {
   return {scaled.encode(), map.convention()};
 }
 
-NormalConvention choose_convention(const ConventionGuess& guess, const OpenOptions& options) {
+NormalConvention choose_convention(const ConventionGuess& guess, const OpenOptions& options,
+                                   float scale) {
   NormalConvention convention = guess.convention;
-  if (options.space) convention.space = *options.space;
   if (options.green_down) convention.green_down = *options.green_down;
   if (convention.space != NormalSpace::Tangent) convention.two_channel = false;
+  if (convention.space == NormalSpace::Tangent && codes_bear(scale)) convention.scale = scale;
   return convention;
 }
 
@@ -104,28 +109,37 @@ std::string said(const ConventionGuess& guess, const NormalConvention& conventio
          guess.sentence;
 }
 
-NormalMap open_normals(const MapSource& source, const std::string& set_name,
-                       const OpenOptions& options, OpenedDocument& opened, OpenedSet& info,
-                       const Progress& progress) {
-  RawImage codes = read_source(source);
+/// The map as it shows with the model's scale.
+NormalMap scaled_normals(NormalMap map, const TextureSet& set, OpenedDocument& opened) {
+  const float scale = set.normal_scale;
+  if (scale == 1.0F || map.convention().space != NormalSpace::Tangent) return map;
+  const std::string sentence =
+      set.name + ": the model scales its normals by " + std::to_string(scale);
+  if (map.convention().scale == scale) {
+    opened.notes.push_back(sentence + "; the map is edited as it then shows");
+    return map;
+  }
+  opened.notes.push_back(sentence + "; this was multiplied into the map");
+  return apply_scale(map, scale);
+}
+
+NormalMap open_normals(const MapSource& source, const TextureSet& set, const OpenOptions& options,
+                       OpenedDocument& opened, OpenedSet& info, const Progress& progress) {
+  ImageTraits traits;
+  RawImage codes = read_source(source, &traits);
   progress.at(0.3, "guessing conventions");
   info.normal_map = source.name.empty() ? source.path.string() : source.name;
   info.normal_map_path = source.path;
   info.type = codes.type();
-  const std::string extension = source.path.extension().string();
-  info.tiff = extension == ".tif" || extension == ".tiff";
+  info.tiff = traits.tiff;
+  info.half_float = traits.half_float;
   info.imported_width = codes.width();
   info.imported_height = codes.height();
-  info.guess = naming(info.normal_map, [&] { return guess_convention(codes); });
-  const NormalConvention convention = choose_convention(*info.guess, options);
-  opened.notes.push_back(set_name + ": " + said(*info.guess, convention));
+  info.guess = naming(info.normal_map, [&] { return guess_convention(codes, options.space); });
+  const NormalConvention convention = choose_convention(*info.guess, options, set.normal_scale);
+  opened.notes.push_back(set.name + ": " + said(*info.guess, convention));
   NormalMap map = naming(info.normal_map, [&] { return NormalMap(std::move(codes), convention); });
-  if (source.scale != 1.0F) {
-    map = apply_scale(map, source.scale);
-    info.scale_applied = true;
-    opened.notes.push_back(set_name + ": the model scales its normals by " +
-                           std::to_string(source.scale) + "; this was multiplied into the map");
-  }
+  map = scaled_normals(std::move(map), set, opened);
   progress.at(0.4, "resizing maps");
   return fit_size(std::move(map), options.size);
 }
@@ -141,7 +155,7 @@ Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& 
     maps.albedo = ColorMap(set.albedo_factor);
   }
   if (normals) {
-    maps.normals = open_normals(*normals, set.name, options, opened, info, progress);
+    maps.normals = open_normals(*normals, set, options, opened, info, progress);
     return maps;
   }
   const RawImage& color = maps.albedo.codes();
@@ -155,7 +169,10 @@ Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& 
   info.type = CodeType::U16;
   info.imported_width = width;
   info.imported_height = height;
-  maps.normals = flat_normal_map(width, height, CodeType::U16);
+  NormalMap flat = flat_normal_map(width, height, CodeType::U16);
+  NormalConvention convention = flat.convention();
+  if (codes_bear(set.normal_scale)) convention.scale = set.normal_scale;
+  maps.normals = NormalMap(flat.codes(), convention);
   opened.notes.push_back(set.name + ": no normal map; starting from a flat one of " +
                          std::to_string(width) + " x " + std::to_string(height) + ", 16 bit");
   return maps;

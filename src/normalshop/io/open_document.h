@@ -29,7 +29,7 @@ struct OpenedSet {
   std::filesystem::path normal_map_path;  ///< empty unless it is a file of its own
   CodeType type = CodeType::U8;           ///< of the imported codes
   bool tiff = false;
-  bool scale_applied = false;  ///< the model's normal scale was multiplied into the map
+  bool half_float = false;  ///< F32 codes that were 16-bit floats
   int imported_width = 0;
   int imported_height = 0;
   std::optional<ConventionGuess> guess;

@@ -45,11 +45,12 @@ void encode_row(const Vec3f* before, const Vec3f* after, int y, RawImage& codes)
 }  // namespace
 
 OpenedImage open_image(const OpenImageOptions& options) {
-  RawImage codes = read_image(options.normals);
-  const ConventionGuess guess =
-      naming(options.normals.native(), [&] { return guess_convention(codes); });
+  ImageTraits traits;
+  RawImage codes = read_image(options.normals, &traits);
+  // Tangent space is that of the picture's plane, whatever the directions.
+  const ConventionGuess guess = naming(
+      options.normals.native(), [&] { return guess_convention(codes, NormalSpace::Tangent); });
   NormalConvention convention = guess.convention;
-  convention.space = NormalSpace::Tangent;  // of the picture's plane, whatever the directions
   if (options.green_down) convention.green_down = *options.green_down;
   ImageDocument::Images images;
   images.normals =
@@ -62,7 +63,8 @@ OpenedImage open_image(const OpenImageOptions& options) {
   }
   if (!options.mask.empty()) images.mask = read_mask(options.mask);
   const auto make = [&] { return ImageDocument(std::move(images)); };
-  OpenedImage opened{naming(options.normals.native(), make), std::move(color_codes), guess, {}};
+  OpenedImage opened{
+      naming(options.normals.native(), make), std::move(color_codes), guess, {}, traits.half_float};
   opened.notes.push_back("green is " + std::string(convention.green_down ? "down" : "up") +
                          (options.green_down ? ", as the flags say; it looks like " : ": ") +
                          guess.sentence);

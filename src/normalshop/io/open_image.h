@@ -24,6 +24,7 @@ struct OpenedImage {
   RawImage color_codes;  ///< as imported; empty: none
   ConventionGuess guess;
   std::vector<std::string> notes;
+  bool half_float = false;  ///< the normals' F32 codes were 16-bit floats
 };
 
 /// Reads normals, colours and mask. Throws IoError, or InvalidInput for pictures that don't fit

@@ -1,5 +1,6 @@
 #include "normalshop/io/detail/polygon.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -38,51 +39,58 @@ bool uses_first_diagonal(std::span<const Vec3f> p, std::span<const Vec2f> uvs) {
   return (p[2] - p[0]).squaredNorm() <= (p[3] - p[1]).squaredNorm();
 }
 
+/// Corners in a ring of those that are left.
 class EarClipper {
  public:
-  explicit EarClipper(std::span<const Vec3f> positions) {
+  explicit EarClipper(std::span<const Vec3f> positions) : size_(positions.size()) {
     const Vec3d normal = area_vector(positions);
     Eigen::Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
     const double sign = normal[axis] < 0.0 ? -1.0 : 1.0;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t i = 0; i < size_; ++i) {
       const Vec3d p = positions[i].cast<double>();
       points_.emplace_back(sign * p[(axis + 1) % 3], p[(axis + 2) % 3]);
-      left_.push_back(static_cast<int>(i));
+      before_.push_back(i == 0 ? size_ - 1 : i - 1);
+      after_.push_back(i + 1 == size_ ? 0 : i + 1);
     }
+    const std::size_t tested = std::min(size_, largest_tested);
+    patience_ = 64 * size_ + 4 * tested * tested;
   }
 
   Triangles run() {
     Triangles triangles;
-    while (left_.size() > 3) {
+    while (size_ > 3) {
       const std::size_t ear = find_ear();
-      const std::size_t n = left_.size();
-      triangles.push_back({left_[(ear + n - 1) % n], left_[ear], left_[(ear + 1) % n]});
-      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
-      next_ = ear == 0 ? 0 : ear - 1;
+      triangles.push_back(triangle(ear));
+      after_[before_[ear]] = after_[ear];
+      before_[after_[ear]] = before_[ear];
+      --size_;
+      next_ = ear == first_ ? after_[ear] : before_[ear];
+      if (ear == first_) first_ = after_[ear];
     }
-    triangles.push_back({left_[0], left_[1], left_[2]});
+    triangles.push_back(triangle(after_[first_]));
     return triangles;
   }
 
  private:
-  const Vec2d& point(std::size_t i) const {
-    return points_[static_cast<std::size_t>(left_[i % left_.size()])];
+  static constexpr std::size_t largest_tested = 4096;
+
+  std::array<int, 3> triangle(std::size_t i) const {
+    return {static_cast<int>(before_[i]), static_cast<int>(i), static_cast<int>(after_[i])};
   }
 
   double turn(std::size_t i) const {
-    const std::size_t n = left_.size();
-    return cross(point(i) - point(i + n - 1), point(i + 1) - point(i));
+    return cross(points_[i] - points_[before_[i]], points_[after_[i]] - points_[i]);
   }
 
-  bool is_ear(std::size_t i) const {
+  /// Counts what it looks at as steps.
+  bool is_ear(std::size_t i, std::size_t& steps) const {
     if (!(turn(i) > 0.0)) return false;
-    const std::size_t n = left_.size();
-    const Vec2d& a = point(i + n - 1);
-    const Vec2d& b = point(i);
-    const Vec2d& c = point(i + 1);
-    for (std::size_t k = 2; k + 1 < n; ++k) {
-      const Vec2d& p = point(i + k);
+    const Vec2d& a = points_[before_[i]];
+    const Vec2d& b = points_[i];
+    const Vec2d& c = points_[after_[i]];
+    for (std::size_t k = after_[after_[i]]; k != before_[i]; k = after_[k], ++steps) {
+      const Vec2d& p = points_[k];
       if (p == a || p == b || p == c) continue;
       if (cross(b - a, p - a) >= 0.0 && cross(c - b, p - b) >= 0.0 && cross(a - c, p - c) >= 0.0) {
         return false;
@@ -91,23 +99,30 @@ class EarClipper {
     return true;
   }
 
-  /// A self-crossing polygon may have none: then its most convex corner.
-  std::size_t find_ear() const {
-    const std::size_t n = left_.size();
-    std::size_t best = 0;
+  /// A self-crossing polygon may have none: then its most convex corner, as far as patience goes.
+  std::size_t find_ear() {
+    std::size_t best = next_;
     double best_turn = -INFINITY;
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t i = (next_ + k) % n;
+    std::size_t i = next_;
+    for (std::size_t k = 0; k < size_; ++k, i = after_[i]) {
+      std::size_t steps = 1;
       // Very large polygons: what is left of quadratic time is not worth the wait.
-      if (n <= 4096 ? is_ear(i) : turn(i) > 0.0) return i;
+      const bool ear = size_ <= largest_tested ? is_ear(i, steps) : turn(i) > 0.0;
+      patience_ -= std::min(patience_, steps);
+      if (ear) return i;
       if (turn(i) > best_turn) best = i, best_turn = turn(i);
+      if (patience_ == 0) break;
     }
     return best;
   }
 
   std::vector<Vec2d> points_;
-  std::vector<int> left_;
+  std::vector<std::size_t> before_;
+  std::vector<std::size_t> after_;
+  std::size_t size_;
+  std::size_t first_ = 0;
   std::size_t next_ = 0;
+  std::size_t patience_ = 0;  ///< steps until any corner will do: crafted polygons end too
 };
 
 }  // namespace

@@ -62,6 +62,7 @@ class CombineOperator : public EditOperator {
   std::string_view name() const override { return "combine"; }
   Value options() const override { return options_value(options_); }
   void load(Assets& assets) override { image_ = assets.patch(options_.image); }
+  std::string_view asset_field() const override { return "image"; }
   bool reads() const override { return false; }
   StrokeUse stroke_use() const override { return area_stroke_use(options_); }
   void check_strokes(const std::vector<UnitStroke>& strokes,

@@ -102,7 +102,7 @@ StrokeUse area_stroke_use(const FilterAreaOptions& options) {
 Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes) {
   if (options.area == FilterArea::View) return {};
   if (options.area == FilterArea::Brush) {
-    return smooth_extent_of(strokes, 0.5F * options.brush, false);
+    return smooth_extent_of(strokes, 0.5F * options.brush, StrokeEnds::Open);
   }
   const Extent box = extent_of(strokes, 0.0F);
   const float feather =

@@ -38,8 +38,10 @@ class PenOperator : public EditOperator {
 
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
     const float margin = 0.5F * options_.width;
-    return options_.smooth ? smooth_extent_of(strokes, margin, options_.closed)
-                           : extent_of(strokes, margin);
+    return options_.smooth
+               ? smooth_extent_of(strokes, margin,
+                                  options_.closed ? StrokeEnds::Closed : StrokeEnds::Open)
+               : extent_of(strokes, margin);
   }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {

@@ -38,6 +38,7 @@ class StampOperator : public PlacedOperator {
   std::string_view name() const override { return "stamp"; }
   Value options() const override { return options_value(options_); }
   void load(Assets& assets) override { patch_ = assets.patch(options_.patch); }
+  std::string_view asset_field() const override { return "patch"; }
 
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
     // One unit a pixel: the reach in pixels is the reach in units, to a pixel.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "normalshop/document/operators/operators.h"
@@ -31,6 +32,7 @@ class TextOperator : public PlacedOperator {
   std::string_view name() const override { return "text"; }
   Value options() const override { return options_value(options_); }
   void load(Assets& assets) override { outline_ = assets.text(options_.text, options_.font); }
+  std::string_view asset_field() const override { return "font"; }
 
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
     const float fine = 1e-3F * std::max(options_.size, 1e-6F);

@@ -3,6 +3,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/option_values.h"
+#include "normalshop/rgbn/pen.h"
 #include "normalshop/rgbn/trim.h"
 
 namespace normalshop {
@@ -31,6 +32,7 @@ class TrimOperator : public EditOperator {
   std::string_view name() const override { return "trim"; }
   Value options() const override { return options_value(options_); }
   void load(Assets& assets) override { pattern_ = assets.patch(options_.pattern); }
+  std::string_view asset_field() const override { return "pattern"; }
   bool reads() const override { return false; }
   StrokeUse stroke_use() const override {
     return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
@@ -51,8 +53,10 @@ class TrimOperator : public EditOperator {
 
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
     const float margin = 0.5F * options_.width;
-    return options_.smooth ? smooth_extent_of(strokes, margin, options_.closed)
-                           : extent_of(strokes, margin);
+    return options_.smooth
+               ? smooth_extent_of(strokes, margin,
+                                  options_.closed ? StrokeEnds::Closed : StrokeEnds::Open)
+               : extent_of(strokes, margin);
   }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {

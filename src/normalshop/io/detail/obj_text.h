@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,31 +18,35 @@ std::string obj_path(std::string name);
 /// Files that "mtllib" lines name: a line is one name with spaces, or several names.
 std::vector<std::string> obj_libraries(const ModelSource& source);
 
-/// visit(number, line) for every logical line: without comments, "\" at the end joins the next.
+/// Is it a statement with a name, in which "#" starts no comment ("usemtl Material #25")?
+bool holds_name(std::string_view statement);
+
+/// visit(number, line, raw) for every statement: its last line's number, its words without comments
+/// ("\" at the end of a line joins the next), and its bytes with the ends of their lines.
 template <class Visitor>
 void for_each_obj_line(std::string_view text, Visitor&& visit) {
   std::string joined;
   std::size_t number = 0;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+  std::size_t begin = 0;  // of the statement
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view line = text.substr(at, end - at);
+    at = std::min(end + 1, text.size());
     ++number;
-    line = trimmed(line.substr(0, line.find('#')));
-    if (line.ends_with('\\')) {
-      joined += line.substr(0, line.size() - 1);
-      joined += ' ';
-      continue;
+    if (!holds_name(joined.empty() ? line : std::string_view(joined))) {
+      line = line.substr(0, line.find('#'));
     }
-    if (joined.empty()) {
-      visit(number, line);
-      continue;
-    }
-    joined += line;
-    visit(number, std::string_view(joined));
+    line = trimmed(line);
+    const bool goes_on = line.ends_with('\\');
+    if (goes_on) line.remove_suffix(1);
+    if (goes_on || !joined.empty()) joined += line;
+    if (goes_on) joined += ' ';
+    if (goes_on && at < text.size()) continue;
+    visit(number, joined.empty() ? line : std::string_view(joined), text.substr(begin, at - begin));
     joined.clear();
+    begin = at;
   }
-  if (!joined.empty()) visit(number, std::string_view(joined));
 }
 
 }  // namespace normalshop
