@@ -77,6 +77,7 @@ class SetPush {
   std::vector<TexelWrite> gutter_writes() const;
   std::vector<TexelWrite> shared_writes() const;
   Vec3f own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
+  static SurfacePoint gutter_source(const GutterTexel& g);
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                       const PushTriangle& source, float strength) const;
   void edit_gutter(const PerLane<const GutterTexel*>& items, Cache& triangles, TexelBatch& batch,
@@ -208,12 +209,17 @@ Vec3f SetPush::own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) c
   return frame.inverse() * base;
 }
 
+/// Where a gutter texel's edit is read: beside a hard edge on the chart's own side of it.
+SurfacePoint SetPush::gutter_source(const GutterTexel& g) {
+  return g.hard_edge ? SurfacePoint{g.owner, g.border_b1, g.border_b2} : g.source;
+}
+
 /// What a gutter texel held before the edit, in its own frame. Where the edit is weak that is its
 /// code; the stronger it is, the more the texel is grown anew from the surface that it stands for:
 /// else a filter would leave there what it takes away on the other side of the seam.
 Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                              const PushTriangle& source, float strength) const {
-  if (g.source.triangle == g.owner) return own;
+  if (g.hard_edge || g.source.triangle == g.owner) return own;
   const Vec3f weights(1.0F, g.source.b1, g.source.b2);
   const std::size_t corner = 3 * static_cast<std::size_t>(g.source.triangle);
   const Vec2f uv = interpolate(mesh_.uvs[corner], mesh_.uvs[corner + 1], mesh_.uvs[corner + 2],
@@ -234,7 +240,7 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
     if (!batch.acts(i)) continue;
     const auto k = static_cast<std::size_t>(i);
     const GutterTexel& g = *items[k];
-    const PushTriangle source = triangles.get(g.source.triangle);
+    const PushTriangle source = triangles.get(gutter_source(g).triangle);
     const PushTriangle& owner = triangles.get(g.owner);
     const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
     const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, sampler_.grid().view);
@@ -252,13 +258,14 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
 }
 
 /// A gutter texel takes the change of the surface point across the seam that it stands for, in the
-/// frame of the chart beside it, which decodes it.
+/// frame of the chart beside it, which decodes it. Beside a hard edge it takes that of the border.
 std::vector<TexelWrite> SetPush::gutter_writes() const {
   return collect_writes(
       set_.texels.gutter(), mesh_, sampler_.grid(),
-      [&](const GutterTexel& g) { return candidates_.contains(g.source.triangle); },
+      [&](const GutterTexel& g) { return candidates_.contains(gutter_source(g).triangle); },
       [&](const GutterTexel& g, Cache& triangles, TexelBatch& batch) {
-        batch.add_point(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2});
+        const SurfacePoint p = gutter_source(g);
+        batch.add_point(triangles.get(p.triangle), {1.0F, p.b1, p.b2});
       },
       [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
         edit_gutter(items, triangles, batch, out);

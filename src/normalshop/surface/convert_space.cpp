@@ -45,6 +45,7 @@ RawImage convert_space(const Mesh& mesh, const TexelMap& texels, const NormalMap
       codes::copy_other_channels(map.codes(), y, columns, out, y, channels);
     }
   });
+  std::uint32_t done = no_triangle;
   for (const GutterTexel& g : texels.gutter()) {
     const int x = static_cast<int>(g.texel) % width;
     const int y = static_cast<int>(g.texel) / width;

@@ -23,9 +23,8 @@ constexpr double largest_step = 0.4;
 constexpr int between_count = 3;
 constexpr float between_weight = 0.3F;
 /// Degrees between both sides' base normals: up to the first they show one surface, from the second
-/// on an edge of it.
+/// on (hard_edge_degrees) an edge of it.
 constexpr float same_surface = 5.0F;
-constexpr float hard_edge = 15.0F;
 constexpr std::size_t grain = 512;
 
 using Plane = Eigen::Matrix<double, 3, 2>;
@@ -329,11 +328,11 @@ void SeamFit::add_sample(const Mesh& mesh, const SeamSample& place, float weight
                          std::vector<std::uint64_t>& keys) {
   const auto bend = static_cast<float>(
       angle_degrees(base_normal_at(mesh, place.a), base_normal_at(mesh, place.b)));
-  if (!(bend < hard_edge)) return;
+  if (!(bend < hard_edge_degrees)) return;
   Sample s;
   s.sides[0] = side(mesh, place.a, maps, keys);
   s.sides[1] = side(mesh, place.b, maps, keys);
-  s.weight = weight * (1.0F - smoothstep(same_surface, hard_edge, bend));
+  s.weight = weight * (1.0F - smoothstep(same_surface, hard_edge_degrees, bend));
   samples_.push_back(s);
 }
 

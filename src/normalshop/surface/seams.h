@@ -21,6 +21,10 @@ struct SeamEdge {
   std::uint32_t b1;
 };
 
+/// A seam at which both sides' base normals differ by this many degrees or more is a hard edge:
+/// each side shows a surface of its own.
+inline constexpr float hard_edge_degrees = 15.0F;
+
 inline constexpr std::uint32_t no_chart = 0xFFFFFFFFU;
 
 struct Seams {

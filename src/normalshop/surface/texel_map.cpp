@@ -170,7 +170,8 @@ TexelMap::TexelMap(const Mesh& mesh, const Topology& topology, std::uint32_t tex
   check(mesh, width, height, gutter);
   owner_.resize(width, height);
   find_owners(mesh);
-  if (gutter > 0) gutter_ = grow_gutter(mesh, topology, affines_, owner_, gutter);
+  if (gutter == 0) return;
+  gutter_ = grow_gutter({mesh, topology, affines_, owner_, !shared_.empty()}, gutter);
 }
 
 void TexelMap::find_owners(const Mesh& mesh) {

@@ -47,12 +47,17 @@ struct GutterTexel {
   SurfacePoint source;  ///< the surface point that the texel stands for: across the seam, at the
                         ///< same distance from it on the surface; on the border itself where
                         ///< nothing of the texture set lies across
+  float border_b1;      ///< weights of the owner's corners 1 and 2 at the nearest point of its
+  float border_b2;      ///< border
+  bool hard_edge;       ///< both sides' base normals differ there (hard_edge_degrees): what lies
+                        ///< across is another surface, and the chart ends at its border
 };
 
 /// Which triangle each texel of one texture set's map shows: a texel belongs to a triangle that
 /// holds its centre. Of several, the first in file order owns it and the others share it. Texels
 /// outside every triangle within `gutter` texels of a chart's border (seam, open edge, or an edge
 /// at which the chart is folded back) are the gutter; the nearest border's triangle owns them.
+/// Where borders of overlapping charts lie on each other, the others' triangles share them.
 ///
 /// A centre on an edge belongs to the triangle right of or below it, so that neighbours of one
 /// chart never share a texel. UVs outside 0..1 repeat. The result does not depend on threads.
@@ -73,7 +78,7 @@ class TexelMap {
   const Image<std::uint32_t>& owner() const { return owner_; }
   /// By texel, then triangle.
   const std::vector<SharedTexel>& shared() const { return shared_; }
-  /// By texel.
+  /// By texel; of several entries of one texel the first is its owner's, the others share it.
   const std::vector<GutterTexel>& gutter() const { return gutter_; }
 
   /// One per triangle of the mesh; degenerate for triangles of other texture sets.
