@@ -190,17 +190,49 @@ TEST(Push, shared_texels_change_once) {
     const View view = make_view({0, 0, 1}, {0, 1, 0}, {0.5F * side, 0.5F, 0}, 0.8F, 0.8F);
     EditingChart chart = pull(mesh, storage, make_grid(view, 1.0F / 160));
     compute_weight(chart, {});
-    push(mesh, chart, constant_edit(chart, c).edit(), storage);
+    const PushResult result = push(mesh, chart, constant_edit(chart, c).edit(), storage);
     // Mirrored texels hold the mirrored slope, so that the edited half reads c.
     const Vec3f truth = normal_from_slope({side * c.x(), c.y()});
+    EXPECT_GT(result.changed, 5000U) << side;
+    EXPECT_LE(result.changed, 128U * 128U) << side;
+    EXPECT_NEAR(result.largest_change, angle_degrees(truth, {0, 0, 1}), 1e-3) << side;
     EXPECT_LT(angle_degrees(storage.sets[0].normals.normal(64, 64), truth), 1e-3) << side;
   }
   // Seen at once: the first triangle's edit, not twice.
   StorageAtlas storage =
       storage_of(mesh, 128, NormalSpace::Tangent, [](const Vec3f&) { return Vec3f(0, 0, 1); });
   const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 300);
-  push(mesh, chart, constant_edit(chart, c).edit(), storage);
+  const PushResult result = push(mesh, chart, constant_edit(chart, c).edit(), storage);
+  EXPECT_EQ(result.changed, 128U * 128U);
   EXPECT_LT(angle_degrees(storage.sets[0].normals.normal(64, 64), normal_from_slope(c)), 1e-3);
+}
+
+/// The owner is all but edge-on, the mirrored half faces the viewer: what is seen decides.
+TEST(Push, of_shared_texels_the_half_seen_squarely_decides) {
+  Mesh mesh = mirrored_pair(4);
+  const float angle = 70.0F * 3.14159265F / 180.0F;
+  const Vec3f along(std::cos(angle), 0.0F, -std::sin(angle));
+  for (Vec3f& p : mesh.positions) {
+    if (p.x() > 0.0F) p = p.x() * along + Vec3f(0.0F, p.y(), 0.0F);
+  }
+  for (std::size_t c = 0; c < 3 * 32; ++c) {
+    mesh.normals[c] = Vec3f(std::sin(angle), 0.0F, std::cos(angle));
+    mesh.tangents[c].head<3>() = along;
+  }
+  StorageAtlas storage = storage_of(mesh, flat_normal_map(128, 128, CodeType::F32));
+  const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 300);
+  const Vec2f c(0.2F, 0.1F);
+  const PushResult result = push(mesh, chart, constant_edit(chart, c).edit(), storage);
+  const Vec3f truth = normal_from_slope({-c.x(), c.y()});
+  double worst = 0.0;
+  for_texels(storage, [&](int x, int y, const SurfacePoint& p) {
+    EXPECT_LT(p.triangle, 32U);
+    if (x < 3) return;  // pixels of the fold show both
+    worst = std::max(worst, angle_degrees(storage.sets[0].normals.normal(x, y), truth));
+  });
+  EXPECT_LT(worst, 1e-3);
+  EXPECT_EQ(result.changed, 128U * 128U);
+  EXPECT_NEAR(result.largest_change, angle_degrees(truth, {0, 0, 1}), 1e-3);
 }
 
 TEST(Push, uvs_wrap_around) {

@@ -74,8 +74,11 @@ class SetPush {
                   TexelBatch& batch) const;
   void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
   Tally edit_row(int y, Task& task);
+  bool is_taken(int x, int y) const;
   std::vector<TexelWrite> gutter_writes() const;
   std::vector<TexelWrite> shared_writes() const;
+  static void collect(const TexelBatch& batch, int i, std::uint32_t texel,
+                      std::vector<TexelWrite>& out);
   Vec3f own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
   static SurfacePoint gutter_source(const GutterTexel& g);
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
@@ -97,6 +100,7 @@ class SetPush {
   StorageSet& set_;
   NormalSpace space_;
   PushCandidates candidates_;
+  std::vector<TexelWrite> shared_;  // of texels that their owners leave to others
 };
 
 void SetPush::add_texels(std::uint32_t owner, int x, int y, int count, Cache& triangles,
@@ -171,11 +175,23 @@ Tally SetPush::edit_row(int y, Task& task) {
   for (int i = 0; i < batch.count; ++i) {
     if (!batch.acts(i)) continue;
     const auto k = static_cast<std::size_t>(i);
+    if (!shared_.empty() && is_taken(task.columns[k], y)) continue;
     set_.normals.set_normal(task.columns[k], y, batch.result.get(i));
     tally.largest = std::max(tally.largest, batch.turn[k]);
     ++tally.changed;
   }
   return tally;
+}
+
+/// Does another triangle than its owner decide what a texel gets?
+bool SetPush::is_taken(int x, int y) const {
+  const std::uint32_t index =
+      static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(set_.normals.width()) +
+      static_cast<std::uint32_t>(x);
+  const auto found =
+      std::lower_bound(shared_.begin(), shared_.end(), index,
+                       [](const TexelWrite& w, std::uint32_t t) { return w.texel < t; });
+  return found != shared_.end() && found->texel == index;
 }
 
 Tally SetPush::push_tile(const Rect& tile, Task& task) {
@@ -252,9 +268,14 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
   }
   apply(sampler_.mode(), batch);
   for (int i = 0; i < batch.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (batch.acts(i)) out.push_back({items[k]->texel, batch.result.get(i)});
+    collect(batch, i, items[static_cast<std::size_t>(i)]->texel, out);
   }
+}
+
+void SetPush::collect(const TexelBatch& batch, int i, std::uint32_t texel,
+                      std::vector<TexelWrite>& out) {
+  const auto k = static_cast<std::size_t>(i);
+  if (batch.acts(i)) out.push_back({texel, batch.weight[k], batch.turn[k], batch.result.get(i)});
 }
 
 /// A gutter texel takes the change of the surface point across the seam that it stands for, in the
@@ -272,7 +293,7 @@ std::vector<TexelWrite> SetPush::gutter_writes() const {
       });
 }
 
-/// Where the owner's edit acts, it decides.
+/// Where the owner's edit acts with as large a weight, it decides.
 void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
                                    TexelBatch& batch) const {
   TexelBatch owners;
@@ -287,8 +308,9 @@ void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cac
   }
   if (owners.count == 0 || !sampler_.read(owners)) return;
   for (int i = 0; i < owners.count; ++i) {
-    if (!owners.acts(i)) continue;
     const auto k = static_cast<std::size_t>(lanes[static_cast<std::size_t>(i)]);
+    const float weight = owners.weight[static_cast<std::size_t>(i)];
+    if (!owners.acts(i) || outweighs(batch.weight[k], weight)) continue;
     batch.change_x[k] = batch.change_y[k] = batch.covered[k] = 0.0F;
   }
 }
@@ -307,13 +329,11 @@ void SetPush::edit_shared(const PerLane<const SharedTexel*>& items, Cache& trian
   fill_frames(ids, batch);
   apply(sampler_.mode(), batch);
   for (int i = 0; i < batch.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (batch.acts(i)) out.push_back({items[k]->texel, batch.result.get(i)});
+    collect(batch, i, items[static_cast<std::size_t>(i)]->texel, out);
   }
 }
 
-/// Texels that further triangles cover: where the owner's edit does nothing, the first of them that
-/// the edit reaches decides.
+/// Texels that further triangles cover, which the chart sees more squarely than their owner.
 std::vector<TexelWrite> SetPush::shared_writes() const {
   return collect_writes(
       set_.texels.shared(), mesh_, sampler_.grid(),
@@ -330,10 +350,10 @@ std::vector<TexelWrite> SetPush::shared_writes() const {
 
 Tally SetPush::write(const std::vector<TexelWrite>& writes) {
   Tally tally;
-  for (std::size_t i = 0; i < writes.size(); ++i) {
-    if (i > 0 && writes[i].texel == writes[i - 1].texel) continue;
-    const auto [x, y] = texel(writes[i].texel);
-    set_.normals.set_normal(x, y, writes[i].normal);
+  for (const TexelWrite& w : writes) {
+    const auto [x, y] = texel(w.texel);
+    set_.normals.set_normal(x, y, w.normal);
+    tally.largest = std::max(tally.largest, w.turn);
     ++tally.changed;
   }
   return tally;
@@ -341,8 +361,10 @@ Tally SetPush::write(const std::vector<TexelWrite>& writes) {
 
 Tally SetPush::run() {
   // Before any texel changes: the gutter reads normals across its seams.
-  const std::vector<TexelWrite> shared = shared_writes();
-  const std::vector<TexelWrite> gutter = gutter_writes();
+  shared_ = shared_writes();
+  keep_strongest(shared_);
+  std::vector<TexelWrite> gutter = gutter_writes();
+  keep_strongest(gutter);
   const std::vector<Rect> tiles = candidates_.tiles();
   Tally tally;
   std::mutex mutex;
@@ -353,7 +375,7 @@ Tally SetPush::run() {
     const std::lock_guard lock(mutex);
     tally.add(local);
   });
-  tally.add(write(shared));
+  tally.add(write(shared_));
   tally.add(write(gutter));
   return tally;
 }
