@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "chart_fixtures.h"
 #include "support/meshes.h"
@@ -302,17 +303,45 @@ TEST(Push, an_open_rim_takes_the_whole_change) {
   }
 }
 
-TEST(Push, maps_without_a_direction_count_as_flat) {
+/// Pull shows the base normals, and push starts from them.
+void expect_undetailed(const Mesh& mesh, const NormalMap& map) {
+  StorageAtlas storage = storage_of(mesh, map);
+  const EditingChart chart = chart_from(mesh, storage, {0.3F, 0.2F, 1}, 100);
+  double shown = 0.0;
+  for (std::size_t i = 0; i < chart.normal.size(); ++i) {
+    if (chart.ids.triangle.data()[i] == no_triangle) continue;
+    ASSERT_NEAR(chart.normal.data()[i].norm(), 1.0F, 1e-5F);
+    shown = std::max(shown, angle_degrees(chart.normal.data()[i], chart.base_normal.data()[i]));
+  }
+  EXPECT_LT(shown, 1e-3);
+  const Vec2f c(0.3F, 0.1F);
+  push(mesh, chart, constant_edit(chart, c).edit(), storage);
+  const View& view = chart.grid.view;
+  const Vec2f wanted = slope_from_normal(view.to_chart({0, 0, 1})) + c;
+  const Vec3f truth = view.to_object(normal_from_slope(wanted));
+  double worst = 0.0;
+  for_texels(storage, [&](int x, int y, const SurfacePoint& p) {
+    worst = std::max(worst, angle_degrees(stored_normal(mesh, storage, x, y, p), truth));
+  });
+  EXPECT_LT(worst, 1e-3);
+}
+
+TEST(Push, codes_without_a_direction_count_as_flat) {
   const Mesh mesh = plane_grid(2);
-  NormalConvention convention;
-  convention.signed_float = true;
-  RawImage codes(64, 64, 3, CodeType::F32);
-  std::fill_n(codes.row<float>(0), 64 * 64 * 3, 0.0F);
-  StorageAtlas storage = storage_of(mesh, NormalMap(std::move(codes), convention));
-  const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 100);
-  push(mesh, chart, constant_edit(chart, {0.3F, 0.1F}).edit(), storage);
-  EXPECT_LT(angle_degrees(storage.sets[0].normals.normal(30, 20), normal_from_slope({0.3F, 0.1F})),
-            1e-3);
+  RawImage grey(64, 64, 3, CodeType::U8);
+  std::fill_n(grey.row<std::uint8_t>(0), 64 * 64 * 3, std::uint8_t{128});
+  expect_undetailed(mesh, NormalMap(grey, {}));
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float code : {0.0F, 0.01F, 1e20F, infinity, -infinity, std::nanf("")}) {
+    for (const NormalSpace space : {NormalSpace::Tangent, NormalSpace::Object}) {
+      NormalConvention convention;
+      convention.signed_float = true;
+      convention.space = space;
+      RawImage codes(64, 64, 3, CodeType::F32);
+      std::fill_n(codes.row<float>(0), 64 * 64 * 3, code);
+      expect_undetailed(mesh, NormalMap(std::move(codes), convention));
+    }
+  }
 }
 
 TEST(Push, frames_without_a_tangent_still_hold_a_normal) {

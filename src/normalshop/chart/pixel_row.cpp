@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 
 #include "normalshop/chart/pixel_row.h"
+#include "normalshop/core/normal_codes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace normalshop {
@@ -113,6 +114,8 @@ void base_normals(int count, const View& view, PixelRow& row) {
 void details(int count, PixelRow& row) {
   const D d;
   const V smallest = hn::Set(d, ChartTriangle::smallest_sine * ChartTriangle::smallest_sine);
+  const V shortest = hn::Set(d, codes::shortest_normal * codes::shortest_normal);
+  const V longest = hn::Set(d, codes::longest_normal * codes::longest_normal);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(d)) {
     const V3 n = load(row.normal, i);
     const V3 t = load(row.tangent, i);
@@ -135,9 +138,11 @@ void details(int count, PixelRow& row) {
     const auto regular =
         hn::Or(direct, hn::And(hn::Gt(across, size), hn::Gt(across, hn::Mul(size, dot(t, t)))));
     const V squared = dot(v, v);
-    const auto long_enough = hn::Gt(squared, hn::Set(d, 1e-12F));
+    const V length = dot(stored, stored);
+    const auto usable = hn::And(hn::And(hn::Ge(length, shortest), hn::Le(length, longest)),
+                                hn::Gt(squared, hn::Zero(d)));
     const auto seen = hn::Gt(hn::Load(d, &row.seen[i]), hn::Zero(d));
-    const auto fine = hn::And(regular, long_enough);
+    const auto fine = hn::And(regular, usable);
     hn::Store(hn::IfThenElseZero(hn::Or(fine, hn::Not(seen)), hn::Set(d, 1.0F)), d,
               &row.regular[i]);
     store_unit(v, squared, hn::And(fine, seen), &row.details[i]);

@@ -168,8 +168,10 @@ HWY_INLINE V select(hn::Mask<D> mask, V yes, V no) { return hn::IfThenElse(mask,
 HWY_INLINE V3 before_edit(const V3& t, const V3& b, const V3& n, const V3& stored, const V3& base) {
   const D d;
   constexpr float shortest = codes::shortest_normal * codes::shortest_normal;
+  constexpr float longest = codes::longest_normal * codes::longest_normal;
   const V length = dot(stored, stored);
-  const auto usable = hn::And(hn::Ge(length, hn::Set(d, shortest)), hn::IsFinite(length));
+  const auto usable =
+      hn::And(hn::Ge(length, hn::Set(d, shortest)), hn::Le(length, hn::Set(d, longest)));
   const V3 v = unit(sum(sum(scaled(t, stored.x), scaled(b, stored.y)), scaled(n, stored.z)));
   return {select(usable, v.x, base.x), select(usable, v.y, base.y), select(usable, v.z, base.z)};
 }
@@ -257,7 +259,7 @@ void finish_frames(TexelBatch& batch) {
   if (HWY_DYNAMIC_DISPATCH(finish_frame_lanes)(batch)) return;
   for (int i = 0; i < batch.count; ++i) {
     if (batch.regular[static_cast<std::size_t>(i)] != 0.0F) continue;
-    batch.set_frame(i, ChartTriangle::any_frame(batch.normal.get(i)));
+    batch.set_frame(i, any_frame(batch.normal.get(i).cast<double>()));
   }
 }
 

@@ -1,7 +1,9 @@
 #include "normalshop/core/normal_codes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace normalshop {
 

@@ -29,6 +29,10 @@ struct TangentFrame {
   Vec3f map_normal(const Vec3f& object_normal) const;
 };
 
+/// An orthonormal frame around a direction, its third column, which need not be unit; around z for
+/// the zero vector.
+Mat3f any_frame(const Vec3d& normal);
+
 Vec3f position_at(const Mesh& mesh, const SurfacePoint& point);
 /// Unit base normal N^b.
 Vec3f base_normal_at(const Mesh& mesh, const SurfacePoint& point);
