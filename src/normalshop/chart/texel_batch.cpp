@@ -135,6 +135,19 @@ HWY_INLINE void view_slopes(const V3& n, V& x, V& y) {
   y = hn::Mul(n.y, inverse);
 }
 
+HWY_INLINE V select(hn::Mask<D> mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
+
+/// What an edit makes of normals beyond the horizon of its direction, which count as those on it:
+/// they keep their distance from these as far as they are not covered, so that a small edit turns
+/// them by little.
+HWY_INLINE V3 beyond_horizon(hn::Mask<D> beyond, const V3& before, const V3& on_horizon,
+                             const V3& after, const Edit2& e) {
+  const V kept = hn::Sub(hn::Set(D(), 1.0F), e.covered);
+  const V3 distance = sum(before, scaled(on_horizon, hn::Set(D(), -1.0F)));
+  const V3 v = unit(sum(after, scaled(distance, kept)));
+  return {select(beyond, v.x, after.x), select(beyond, v.y, after.y), select(beyond, v.z, after.z)};
+}
+
 HWY_INLINE V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) {
   V x;
   V y;
@@ -144,7 +157,11 @@ HWY_INLINE V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) 
   view_slopes(base, base_x, base_y);
   const V moved_x = hn::Add(e.change_x, hn::Mul(e.covered, hn::Sub(base_x, x)));
   const V moved_y = hn::Add(e.change_y, hn::Mul(e.covered, hn::Sub(base_y, y)));
-  return unit({hn::Neg(hn::Add(x, moved_x)), hn::Neg(hn::Add(y, moved_y)), hn::Set(D(), 1.0F)});
+  const V one = hn::Set(D(), 1.0F);
+  const V3 after = unit({hn::Neg(hn::Add(x, moved_x)), hn::Neg(hn::Add(y, moved_y)), one});
+  const auto beyond = hn::Lt(before.z, hn::Set(D(), min_cosine));
+  if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return after;
+  return beyond_horizon(beyond, before, unit({hn::Neg(x), hn::Neg(y), one}), after, e);
 }
 
 HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) {
@@ -157,12 +174,13 @@ HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) 
   const V h_x = hn::Add(hn::Mul(hn::Sub(sg.x, hn::Mul(base.x, z)), kept), e.change_x);
   const V h_y = hn::Add(hn::Mul(hn::Sub(sg.y, hn::Mul(base.y, z)), kept), e.change_y);
   const V turned = hn::Add(hn::Mul(h_x, base.x), hn::Mul(h_y, base.y));
-  return unit({hn::Sub(base.x, hn::Sub(h_x, hn::Mul(turned, base.x))),
-               hn::Sub(base.y, hn::Sub(h_y, hn::Mul(turned, base.y))),
-               hn::Add(base.z, hn::Mul(turned, base.z))});
+  const V3 after = unit({hn::Sub(base.x, hn::Sub(h_x, hn::Mul(turned, base.x))),
+                         hn::Sub(base.y, hn::Sub(h_y, hn::Mul(turned, base.y))),
+                         hn::Add(base.z, hn::Mul(turned, base.z))});
+  const auto beyond = hn::Lt(along, least);
+  if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return after;
+  return beyond_horizon(beyond, before, unit(sum(base, scaled(sg, hn::Set(D(), -1.0F)))), after, e);
 }
-
-HWY_INLINE V select(hn::Mask<D> mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
 
 /// The detailed normal; the base normal where the code holds no direction.
 HWY_INLINE V3 before_edit(const V3& t, const V3& b, const V3& n, const V3& stored, const V3& base) {

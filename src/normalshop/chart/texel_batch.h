@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "normalshop/chart/chart_triangle.h"
 #include "normalshop/chart/details.h"
@@ -62,9 +63,11 @@ struct TexelBatch {
   Vectors result;           ///< unit
   alignas(64) Lane turn{};  ///< 1 - cos of the angle between before and after
 
+  /// Does the edit do anything there? What is no number or has no unit normal does not.
   bool acts(int i) const {
     const auto k = static_cast<std::size_t>(i);
-    return covered[k] > 0.0F || change_x[k] != 0.0F || change_y[k] != 0.0F;
+    const float size = std::abs(change_x[k]) + std::abs(change_y[k]) + covered[k];
+    return size > 0.0F && size < 1e18F;
   }
   void set_frame(int i, const Mat3f& frame) {
     tangent.set(i, frame.col(0));
@@ -84,7 +87,8 @@ void finish_frames(TexelBatch& batch);
 
 /// Fills result and turn of the texels that the edit acts on: gradient_from_normal(), the edit,
 /// normal_from_gradient() and the exact inverse of the frame. A texel whose stored vector has no
-/// direction counts as undetailed.
+/// direction counts as undetailed; one beyond the horizon of the edit's direction stays as far
+/// beyond it.
 void apply(EditMode mode, TexelBatch& batch);
 
 }  // namespace normalshop
