@@ -98,7 +98,7 @@ void add_run_lanes(const PushTriangle& t, const TexelAffine& affine, int x, int 
     hn::StoreU(hn::Set(d, t.sign), d, &batch.sign[k]);
     hn::StoreU(hn::Set(d, t.depth_step.x()), d, &batch.depth_dx[k]);
     hn::StoreU(hn::Set(d, t.depth_step.y()), d, &batch.depth_dy[k]);
-    hn::StoreU(hn::Set(d, t.tolerance), d, &batch.tolerance[k]);
+    hn::StoreU(hn::Set(d, t.steepness), d, &batch.steepness[k]);
   }
   batch.count += count;
 }
@@ -239,20 +239,15 @@ void PushTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t t
   const Vec3f across = points.col(1).cross(points.col(2));
   const float facing = std::abs(across.z());
   const float steep = across.head<2>().norm();
-  constexpr float steepest = 20.0F;
   // Pixels to depth: the plane's gradient is -across.xy / across.z.
-  const float limit = steepest * grid.pixel;
+  const float limit = steepest_surface * grid.pixel;
   depth_step.setZero();
   if (facing > 0.0F) {
     depth_step = -across.head<2>() / across.z();
     if (!(steep <= limit * facing)) depth_step *= limit * facing / steep;
   }
   if (!depth_step.allFinite()) depth_step.setZero();
-  // The surface may bend away by as much as the steeper of plane and base normals is steep.
-  const float least =
-      std::min({normals(2, 0), normals(2, 0) + normals(2, 1), normals(2, 0) + normals(2, 2)});
-  const float bent = std::min(1.0F / std::max(least, 1e-6F), steepest) - 1.0F;
-  tolerance = grid.pixel + std::max(depth_step.norm(), bent * grid.pixel);
+  steepness = depth_step.norm();
 }
 
 void TexelBatch::add_point(const PushTriangle& triangle, const Vec3f& weights) {
@@ -264,7 +259,7 @@ void TexelBatch::add_point(const PushTriangle& triangle, const Vec3f& weights) {
   sign[k] = triangle.sign;
   depth_dx[k] = triangle.depth_step.x();
   depth_dy[k] = triangle.depth_step.y();
-  tolerance[k] = triangle.tolerance;
+  steepness[k] = triangle.steepness;
   ++count;
 }
 

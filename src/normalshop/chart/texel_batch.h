@@ -9,10 +9,13 @@
 /// Push's arithmetic for many texels at once, private to floor 4.
 namespace normalshop {
 
+/// Surface steeper than this, in depth per length, counts as this steep.
+inline constexpr float steepest_surface = 20.0F;
+
 /// A triangle with what its points need to be found in the chart's depth.
 struct PushTriangle : ChartTriangle {
   Vec2f depth_step = Vec2f::Zero();  ///< of its plane, per pixel; limited on edge-on triangles
-  float tolerance = 0.0F;            ///< depths this far off the plane show it still
+  float steepness = 0.0F;            ///< its length
 
   void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle);
 };
@@ -46,7 +49,7 @@ struct TexelBatch {
   Vectors base;   ///< along the base normal
   alignas(64) Lane depth_dx{};
   alignas(64) Lane depth_dy{};
-  alignas(64) Lane tolerance{};
+  alignas(64) Lane steepness{};
   // The edit there: filled by EditSampler::read(), all 0 where nothing happens.
   alignas(64) Lane weight{};  ///< of the effective chart; 0 where the chart does not see the point
   alignas(64) Lane change_x{};  ///< change times weight
