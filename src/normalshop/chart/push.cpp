@@ -33,11 +33,6 @@ struct Tally {
 
 constexpr int tile_size = NormalMap::tile_size;
 
-struct Texel {
-  int x;
-  int y;
-};
-
 /// The push into one texture set.
 class SetPush {
  public:
@@ -90,10 +85,7 @@ class SetPush {
   void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
                             TexelBatch& batch) const;
   Tally write(const std::vector<TexelWrite>& writes);
-  Texel texel(std::uint32_t index) const {
-    const int width = set_.normals.width();
-    return {static_cast<int>(index) % width, static_cast<int>(index) / width};
-  }
+  TexelPlace texel(std::uint32_t index) const { return texel_place(index, set_.normals.width()); }
 
   const Mesh& mesh_;
   const EditSampler& sampler_;
@@ -262,7 +254,7 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
     const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, sampler_.grid().view);
     batch.set_frame(i, frame);
     const auto [x, y] = texel(g.texel);
-    const float strength = std::hypot(batch.change_x[k], batch.change_y[k]) + batch.covered[k];
+    const float strength = Vec2f(batch.change_x[k], batch.change_y[k]).norm() + batch.covered[k];
     const Vec3f own = own_vector(x, y, batch.base.get(i), frame);
     batch.stored.set(i, gutter_vector(g, frame, own, source, strength));
   }

@@ -9,6 +9,7 @@
 #include "normalshop/core/sample.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/surface/frames.h"
+#include "normalshop/surface/texel_map.h"
 
 namespace normalshop {
 
@@ -99,9 +100,7 @@ class SeamFit::Solver {
 SeamFit::Solver::Solver(const SeamFit& fit, std::span<NormalMap* const> maps) : fit_(fit) {
   for (const Texel& t : fit.texels_) {
     const NormalMap& map = *maps[t.set];
-    const auto width = static_cast<std::uint32_t>(map.width());
-    const int x = static_cast<int>(t.texel % width);
-    const int y = static_cast<int>(t.texel / width);
+    const auto [x, y] = texel_place(t.texel, map.width());
     const Vec3f now = map.vector(x, y);
     const bool moves = map.edited(x, y) && now != t.before;
     free_of_.push_back(moves ? static_cast<std::uint32_t>(texel_of_.size()) : fixed);
@@ -276,9 +275,8 @@ std::size_t SeamFit::Solver::run(std::span<NormalMap* const> maps) {
   for (const std::uint32_t index : texel_of_) {
     const Texel& t = fit_.texels_[index];
     NormalMap& map = *maps[t.set];
-    const auto width = static_cast<std::uint32_t>(map.width());
-    map.set_normal(static_cast<int>(t.texel % width), static_cast<int>(t.texel / width),
-                   normals_[index].cast<float>().normalized());
+    const auto [x, y] = texel_place(t.texel, map.width());
+    map.set_normal(x, y, normals_[index].cast<float>().normalized());
   }
   return texel_of_.size();
 }
@@ -351,10 +349,8 @@ void SeamFit::collect_texels(const std::vector<std::uint64_t>& keys, NormalMaps 
   for (const std::uint64_t key : unique) {
     const auto set = static_cast<std::uint32_t>(key >> 32U);
     const auto texel = static_cast<std::uint32_t>(key);
-    const auto width = static_cast<std::uint32_t>(maps[set]->width());
-    texels_.push_back(
-        {set, texel,
-         maps[set]->vector(static_cast<int>(texel % width), static_cast<int>(texel / width))});
+    const auto [x, y] = texel_place(texel, maps[set]->width());
+    texels_.push_back({set, texel, maps[set]->vector(x, y)});
   }
 }
 

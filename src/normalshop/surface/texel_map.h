@@ -13,6 +13,16 @@ struct Topology;
 
 inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
+/// Column and row of a texel whose index is y * width + x. Maps hold up to 2^32 texels.
+struct TexelPlace {
+  int x;
+  int y;
+};
+constexpr TexelPlace texel_place(std::uint32_t index, int width) {
+  const auto columns = static_cast<std::uint32_t>(width);
+  return {static_cast<int>(index % columns), static_cast<int>(index / columns)};
+}
+
 /// Affine map from a texel to barycentric weights of one triangle's corners 1 and 2:
 /// b = origin_weights + (x - x0) * db_dx + (y - y0) * db_dy, (x, y) the texel's integer
 /// coordinates. (x0, y0) lies near corner 0, so that differences stay exact in float.
@@ -60,7 +70,9 @@ struct GutterTexel {
 /// Where borders of overlapping charts lie on each other, the others' triangles share them.
 ///
 /// A centre on an edge belongs to the triangle right of or below it, so that neighbours of one
-/// chart never share a texel. UVs outside 0..1 repeat. The result does not depend on threads.
+/// chart never share a texel. UVs outside 0..1 repeat; where a triangle is larger than the map, a
+/// texel stands for one of its repetitions on it, near the middle. The result does not depend on
+/// threads.
 class TexelMap {
  public:
   TexelMap() = default;
@@ -83,7 +95,8 @@ class TexelMap {
 
   /// One per triangle of the mesh; degenerate for triangles of other texture sets.
   const std::vector<TexelAffine>& affines() const { return affines_; }
-  /// Weights at a texel's centre in a triangle that covers it, whole-map shifts considered.
+  /// Weights at a texel's centre in a triangle that covers it, whole-map shifts considered: of
+  /// several repetitions one.
   SurfacePoint surface_point(std::uint32_t triangle, int x, int y) const;
 
  private:
