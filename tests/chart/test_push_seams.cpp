@@ -154,6 +154,17 @@ TEST(SeamMismatch, finds_a_turned_chart) {
   EXPECT_NEAR(wrong.max, angle, 0.01);
 }
 
+TEST(SeamMismatch, takes_uvs_that_are_no_numbers) {
+  Mesh mesh = plane_two_charts(2);
+  const Seams seams = find_seams(mesh);
+  for (Vec2f& uv : mesh.uvs) uv.x() = std::nanf("");
+  const NormalMap map = flat_normal_map(64, 64, CodeType::U8);
+  const std::array<const NormalMap*, 1> maps{&map};
+  const std::vector<SeamSample> samples = sample_seams(mesh, seams.edges, maps);
+  EXPECT_EQ(samples.size(), seams.edges.size());
+  for (const float degrees : seam_angles(mesh, samples, maps)) EXPECT_LT(degrees, 0.5F);
+}
+
 TEST(SeamMismatch, chooses_the_samples_that_edits_touch) {
   const Mesh mesh = plane_two_charts(4);
   StorageAtlas storage = storage_of(mesh, flat_normal_map(256, 256, CodeType::U8));

@@ -1,6 +1,7 @@
 #include "normalshop/chart/edit_sampler.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/visible_weight.h"
@@ -31,6 +32,9 @@ Image<std::int32_t> dilate(const Image<std::uint8_t>& in) {
 
 EditSampler::EditSampler(const EditingChart& chart, const ChartEdit& edit)
     : chart_(chart), edit_(edit), region_(intersect(edit.region, edit.change.rect())) {
+  [[maybe_unused]] const Rect all{0, 0, chart.grid.width(), chart.grid.height()};
+  assert(chart.ids.depth.rect() == all && chart.weight.rect() == all);
+  assert(edit.change.rect() == all && (edit.coverage.empty() || edit.coverage.rect() == all));
   Image<std::uint8_t> exact((chart.grid.width() + block - 1) / block,
                             (chart.grid.height() + block - 1) / block, 0);
   parallel_for(static_cast<std::size_t>(exact.height()), 4, [&](std::size_t a, std::size_t b) {

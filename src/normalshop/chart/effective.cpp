@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -127,7 +128,10 @@ void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps) {
 }
 
 void compute_weight(EditingChart& chart, const EffectiveOptions& options) {
+  assert(options.full_angle >= 0.0F && options.full_angle < options.zero_angle &&
+         options.zero_angle <= 90.0F && options.step_falloff >= 0.0F);
   const int width = chart.grid.width();
+  assert(chart.base_normal.width() == width && chart.base_normal.height() == chart.grid.height());
   Image<std::uint8_t> steps;
   find_depth_steps(chart, steps);
   const float falloff = std::max(2.0F, options.step_falloff / chart.grid.pixel);

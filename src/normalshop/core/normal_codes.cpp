@@ -52,8 +52,11 @@ Vec3f decode(const Code* code, const NormalConvention& convention, const CodeRan
 /// The vector as codes can hold it.
 Vec3f storable(const Vec3f& v, bool two_channel, bool bounded) {
   const float largest = v.cwiseAbs().maxCoeff();
-  if (!(largest <= 1e18F) || !v.allFinite()) return Vec3f::Zero();
-  if (two_channel) return v.isZero() ? v : Vec3f(v.normalized());
+  if (!(largest <= codes::longest_normal) || !v.allFinite()) return Vec3f::Zero();
+  if (two_channel) {
+    const Vec3f held(v.x(), v.y(), std::max(v.z(), 0.0F));  // not mirrored
+    return held.isZero() ? held : Vec3f(held.normalized());
+  }
   return bounded && largest > 1.0F ? Vec3f(v / largest) : v;
 }
 

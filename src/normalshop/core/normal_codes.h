@@ -33,7 +33,8 @@ void decode_row(const RawImage& image, const NormalConvention& convention, int x
 
 /// Writes vectors[0] to vectors[count - 1] as the codes of texels x0 on. What codes of this type
 /// can't hold keeps its direction: vectors beyond -1..1 are shortened, two-channel codes take unit
-/// vectors, and what is not finite becomes the zero vector.
+/// vectors, and what is not finite becomes the zero vector. Two-channel codes have no z below 0:
+/// such vectors go to the horizon, straight up or down.
 void encode_texels(const Vec3f* vectors, int count, const NormalConvention& convention,
                    RawImage& image, int x0, int y);
 
