@@ -13,8 +13,6 @@ namespace normalshop {
 struct SeamEdge {
   std::uint32_t triangle_a;
   std::uint32_t triangle_b;
-  int edge_a;  ///< 0 to 2, from corner k to corner (k + 1) % 3
-  int edge_b;
   std::uint32_t a0;  ///< corner indices, 3 * triangle + k
   std::uint32_t a1;
   std::uint32_t b0;

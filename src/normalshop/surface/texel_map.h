@@ -85,7 +85,6 @@ class TexelMap {
 
   int width() const { return owner_.width(); }
   int height() const { return owner_.height(); }
-  std::uint32_t texture_set() const { return texture_set_; }
   /// Triangle or no_triangle, per texel.
   const Image<std::uint32_t>& owner() const { return owner_; }
   /// By texel, then triangle.
