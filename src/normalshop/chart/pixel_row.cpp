@@ -4,6 +4,7 @@
 // After foreach_target, as Highway asks.
 #include <hwy/highway.h>
 
+#include "normalshop/chart/detail/lanes-inl.h"
 #include "normalshop/chart/pixel_row.h"
 #include "normalshop/core/normal_codes.h"
 
@@ -11,35 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace normalshop {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, PixelRow::padding>;
-using V = hn::Vec<D>;
-
-struct V3 {
-  V x;
-  V y;
-  V z;
-};
-
-HWY_INLINE V3 load(const PixelRow::Vectors& v, std::size_t i) {
-  const D d;
-  return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
-}
-
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-HWY_INLINE V3 scaled(const V3& a, V f) {
-  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
-}
-
-HWY_INLINE V mix(float origin, float f1, float f2, V b1, V b2) {
-  const D d;
-  return hn::Add(hn::Add(hn::Set(d, origin), hn::Mul(b1, hn::Set(d, f1))),
-                 hn::Mul(b2, hn::Set(d, f2)));
-}
+static_assert(PixelRow::padding >= lane_padding);
 
 HWY_INLINE void store_mix(const Mat3f& m, V b1, V b2, std::size_t i, PixelRow::Vectors& out) {
   const D d;
@@ -121,10 +94,7 @@ void details(int count, PixelRow& row) {
     const V3 t = load(row.tangent, i);
     const V3 stored = load(row.stored, i);
     const V sign = hn::Load(d, &row.sign[i]);
-    const V3 b = scaled({hn::Sub(hn::Mul(n.y, t.z), hn::Mul(n.z, t.y)),
-                         hn::Sub(hn::Mul(n.z, t.x), hn::Mul(n.x, t.z)),
-                         hn::Sub(hn::Mul(n.x, t.y), hn::Mul(n.y, t.x))},
-                        sign);
+    const V3 b = scaled(cross(n, t), sign);
     const auto direct = hn::Eq(sign, hn::Zero(d));
     const auto mixed = [&](V tc, V bc, V nc, V sc) {
       const V sum =

@@ -4,6 +4,7 @@
 // After foreach_target, as Highway asks.
 #include <hwy/highway.h>
 
+#include "normalshop/chart/detail/lanes-inl.h"
 #include "normalshop/chart/texel_batch.h"
 #include "normalshop/core/normal_codes.h"
 
@@ -11,21 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace normalshop {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, TexelBatch::padding>;
-using V = hn::Vec<D>;
-
-struct V3 {
-  V x;
-  V y;
-  V z;
-};
-
-HWY_INLINE V3 load(const TexelBatch::Vectors& v, std::size_t i) {
-  const D d;
-  return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
-}
+static_assert(TexelBatch::padding >= lane_padding);
 
 HWY_INLINE void store(const V3& v, TexelBatch::Vectors& out, std::size_t i) {
   const D d;
@@ -34,32 +21,12 @@ HWY_INLINE void store(const V3& v, TexelBatch::Vectors& out, std::size_t i) {
   hn::Store(v.z, d, &out.z[i]);
 }
 
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-HWY_INLINE V3 scaled(const V3& a, V f) {
-  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
-}
-
 HWY_INLINE V3 sum(const V3& a, const V3& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
 
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
-          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-
 HWY_INLINE V3 unit(const V3& a) {
   return scaled(a, hn::Div(hn::Set(D(), 1.0F), hn::Sqrt(dot(a, a))));
-}
-
-HWY_INLINE V mix(float origin, float f1, float f2, V b1, V b2) {
-  const D d;
-  return hn::Add(hn::Add(hn::Set(d, origin), hn::Mul(b1, hn::Set(d, f1))),
-                 hn::Mul(b2, hn::Set(d, f2)));
 }
 
 HWY_INLINE V3 mix(const Mat3f& m, V b1, V b2) {
