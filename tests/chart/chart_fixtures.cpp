@@ -74,7 +74,10 @@ StorageAtlas storage_of(const Mesh& mesh, int size, NormalSpace space, const Nor
   for_texels(storage, [&](int x, int y, const SurfacePoint& p) {
     store(static_cast<std::uint32_t>(y * size + x), p, p);
   });
-  for (const GutterTexel& g : storage.sets[0].texels.gutter()) {
+  const std::vector<GutterTexel>& gutter = storage.sets[0].texels.gutter();
+  for (std::size_t i = 0; i < gutter.size(); ++i) {
+    const GutterTexel& g = gutter[i];
+    if (i > 0 && gutter[i - 1].texel == g.texel) continue;
     store(g.texel, {g.owner, g.owner_b1, g.owner_b2}, g.source);
   }
   storage.sets[0].normals = NormalMap(std::move(codes), convention);

@@ -75,6 +75,59 @@ TEST(PushSeams, the_seam_of_a_sphere_stays_closed) {
   EXPECT_LT(g.growth.p99, 1.0);
 }
 
+/// Around a hard edge each face is a surface of its own: what happens to one leaves the other's
+/// gutter alone, and its own gutter continues it.
+TEST(PushSeams, a_hard_edge_keeps_its_faces_apart) {
+  const Mesh mesh = cube(4);
+  StorageAtlas storage = storage_of(mesh, flat_normal_map(384, 384, CodeType::U16));
+  const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 300);
+  const Vec2f c(0.3F, 0.1F);
+  push(mesh, chart, constant_edit(chart, c).edit(), storage);
+  const NormalMap& map = storage.sets[0].normals;
+  const Vec3f truth = normal_from_slope(c);
+  int others = 0;
+  int own = 0;
+  double worst = 0.0;
+  for (const GutterTexel& g : storage.sets[0].texels.gutter()) {
+    const int x = static_cast<int>(g.texel % 384);
+    const int y = static_cast<int>(g.texel / 384);
+    EXPECT_TRUE(g.hard_edge);
+    if (g.owner >= 32) {
+      others += map.edited(x, y) ? 1 : 0;
+      continue;
+    }
+    ++own;
+    worst = std::max(worst, angle_degrees(map.normal(x, y), truth));
+  }
+  EXPECT_EQ(others, 0);
+  EXPECT_GT(own, 1000);
+  EXPECT_LT(worst, 1e-3);
+}
+
+/// The chart sees only the half that owns nothing: the gutter that both share follows it.
+TEST(PushSeams, the_gutter_of_mirrored_halves_follows_the_one_that_is_seen) {
+  Mesh mesh = mirrored_pair(4);
+  for (Vec2f& uv : mesh.uvs) uv = Vec2f(0.1F, 0.1F) + 0.8F * uv;
+  StorageAtlas storage = storage_of(mesh, flat_normal_map(128, 128, CodeType::U8));
+  const View view = make_view({0, 0, 1}, {0, 1, 0}, {-0.56F, 0.5F, 0}, 1.1F, 1.1F);
+  EditingChart chart = pull(mesh, storage, make_grid(view, 1.0F / 160));
+  compute_weight(chart, {});
+  const Vec2f c(0.2F, 0.1F);
+  push(mesh, chart, constant_edit(chart, c).edit(), storage);
+  const Vec3f truth = normal_from_slope({-c.x(), c.y()});
+  int texels = 0;
+  double worst = 0.0;
+  for (const GutterTexel& g : storage.sets[0].texels.gutter()) {
+    const int x = static_cast<int>(g.texel % 128);
+    const int y = static_cast<int>(g.texel / 128);
+    if (x < 16) continue;  // beside the fold, at whose other end lies the half that is not seen
+    ++texels;
+    worst = std::max(worst, angle_degrees(storage.sets[0].normals.normal(x, y), truth));
+  }
+  EXPECT_GT(texels, 2000);
+  EXPECT_LT(worst, 1e-3);
+}
+
 TEST(SeamMismatch, finds_a_turned_chart) {
   const Mesh mesh = plane_two_charts(4);
   StorageAtlas storage = storage_of(mesh, 256, NormalSpace::Tangent,
@@ -99,6 +152,17 @@ TEST(SeamMismatch, finds_a_turned_chart) {
   EXPECT_NEAR(wrong.mean, angle, 0.01);
   EXPECT_NEAR(wrong.p50, angle, 0.01);
   EXPECT_NEAR(wrong.max, angle, 0.01);
+}
+
+TEST(SeamMismatch, takes_uvs_that_are_no_numbers) {
+  Mesh mesh = plane_two_charts(2);
+  const Seams seams = find_seams(mesh);
+  for (Vec2f& uv : mesh.uvs) uv.x() = std::nanf("");
+  const NormalMap map = flat_normal_map(64, 64, CodeType::U8);
+  const std::array<const NormalMap*, 1> maps{&map};
+  const std::vector<SeamSample> samples = sample_seams(mesh, seams.edges, maps);
+  EXPECT_EQ(samples.size(), seams.edges.size());
+  for (const float degrees : seam_angles(mesh, samples, maps)) EXPECT_LT(degrees, 0.5F);
 }
 
 TEST(SeamMismatch, chooses_the_samples_that_edits_touch) {

@@ -130,6 +130,22 @@ TEST(NormalMap, TwoChannelsBecomeThree) {
   EXPECT_NEAR(three.code(0, 0, 2), (0.8F + 1.0F) * 32767.5F, 1.0F);
 }
 
+/// Two channels cannot tell a z below 0 from one above: such normals go to the horizon, where they
+/// are nearest to what they were, and are not mirrored.
+TEST(NormalMap, TwoChannelsHoldNoNormalBehindTheSurface) {
+  const NormalConvention two{.two_channel = true};
+  NormalMap map(RawImage(3, 1, 2, CodeType::F32), {.two_channel = true, .signed_float = true});
+  map.set_normal(0, 0, Vec3f(0.36F, 0.48F, -0.8F));
+  map.set_normal(1, 0, Vec3f(0.36F, 0.48F, 0.8F));
+  map.set_normal(2, 0, Vec3f(0.0F, 0.0F, -1.0F));
+  for (const CodeType type : {CodeType::U16, CodeType::F32}) {
+    const NormalMap read(map.encode(type, two), two);
+    EXPECT_LT(angle_degrees(read.vector(0, 0), {0.6F, 0.8F, 0.0F}), 0.5);
+    EXPECT_LT(angle_degrees(read.vector(1, 0), {0.36F, 0.48F, 0.8F}), 0.01);
+    EXPECT_LT(angle_degrees(read.vector(2, 0), {0.0F, 0.0F, 1.0F}), 0.01);
+  }
+}
+
 TEST(NormalMap, GreenDownIsNegatedY) {
   RawImage image(1, 1, 3, CodeType::U8);
   std::memcpy(image.data(), "\x80\xD0\xE0", 3);

@@ -32,6 +32,16 @@ TEST(SampleBilinear, ContinuesTheBorder) {
   EXPECT_EQ(sample_bilinear(image.view(), 4.0F, 99.0F), image(4, 6));
 }
 
+TEST(SampleClamped, ReadsTheFirstPixelAtPlacesThatAreNoNumbers) {
+  const Image<float> image = sampled(quadratic);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(sample_bilinear(image.view(), nan, 3.0F), image(0, 3));
+  EXPECT_EQ(sample_bilinear(image.view(), 4.0F, nan), image(4, 0));
+  EXPECT_EQ(sample_bicubic(image.view(), nan, nan), image(0, 0));
+  EXPECT_EQ(sample_bilinear(image.view(), infinity, -infinity), image(8, 0));
+}
+
 TEST(SampleBicubic, IsExactForQuadraticsInside) {
   const Image<float> image = sampled(quadratic);
   for (const float x : {1.0F, 2.3F, 4.5F, 6.9F}) {

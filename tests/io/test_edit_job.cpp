@@ -210,6 +210,7 @@ TEST(EditJob, EditsTheMirroredHalf) {
                           R"(, "options": {"profile": "bump", "width": 0.2, "height": 0.02},
                  "strokes": [[[0.2, -0.3], [0.2, 0.3]]]})"),
                    folder / "out", {});
+  EXPECT_GT(job.edits[0].pushed.largest_change, 5.0F);
   const NormalMap& map = job.opened.document.storage().sets[0].normals;
   // u = |x|: left of the ridge lies right in the map.
   const Vec3f left = map.normal(static_cast<int>(0.34F * 256.0F), 128);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "support/meshes.h"
@@ -108,6 +109,26 @@ TEST(Gutter, UnfoldsTheCubeAroundItsEdges) {
   EXPECT_LT(worst, 1e-5);
 }
 
+TEST(Gutter, MarksHardEdgesAlone) {
+  for (const Mesh& smooth : {test::plane_two_charts(4), test::uv_sphere(24, 12)}) {
+    const TexelMap map(smooth, 0, 256, 256, 6);
+    for (const GutterTexel& g : map.gutter()) ASSERT_FALSE(g.hard_edge);
+  }
+  const Mesh mesh = test::cube(3);
+  const TexelMap map(mesh, 0, 300, 200, 6);
+  EXPECT_GT(map.gutter().size(), 1000U);
+  for (const GutterTexel& g : map.gutter()) {
+    ASSERT_TRUE(g.hard_edge);
+    // The border's nearest point is the owner's, and less than the texel's reach away.
+    const Vec3f border = position_at(mesh, {g.owner, g.border_b1, g.border_b2});
+    EXPECT_EQ((border.cwiseAbs().array() > 0.99999F).count() >= 2, true);
+    const std::size_t c = 3 * static_cast<std::size_t>(g.owner);
+    const Vec2f uv =
+        interpolate<Vec2f>(mesh.uvs[c], mesh.uvs[c + 1], mesh.uvs[c + 2], g.border_b1, g.border_b2);
+    EXPECT_LE((uv.cast<double>().cwiseProduct(Vec2d(300.0, 200.0)) - centre(g, map)).norm(), 6.001);
+  }
+}
+
 TEST(Gutter, OwnerWeightsExtrapolateTheTexelsCentre) {
   const Mesh mesh = test::plane_two_charts(1);
   const TexelMap map(mesh, 0, 256, 256, 4);
@@ -144,15 +165,69 @@ TEST(Gutter, FoldedChartsAreBordersToo) {
   Mesh mesh = test::mirrored_pair(3);
   for (Vec2f& uv : mesh.uvs) uv = Vec2f(0.5F - 0.4F * uv.x(), 0.1F + 0.8F * uv.y());
   const TexelMap map(mesh, 0, 100, 100, 3);
-  int right = 0;
+  std::array<int, 2> right{};  // as either half's gutter
   for (const GutterTexel& g : map.gutter()) {
     const Vec2d p = centre(g, map) / 100.0;
     if (p.x() < 0.5 || p.y() < 0.1 || p.y() > 0.9) continue;
-    ++right;
+    ++right[g.owner < 18 ? 0 : 1];
+    EXPECT_NE(g.source.triangle < 18, g.owner < 18);
     const double x = std::abs(static_cast<double>(position_at(mesh, g.source).x()));
     EXPECT_NEAR(x, (p.x() - 0.5) / 0.4, 1e-5);
   }
-  EXPECT_EQ(right, 3 * 80);
+  EXPECT_EQ(right, (std::array<int, 2>{3 * 80, 3 * 80}));
+}
+
+TEST(Gutter, IsSharedByChartsThatLieOnEachOther) {
+  Mesh mesh = test::mirrored_pair(3);
+  for (Vec2f& uv : mesh.uvs) uv = Vec2f(0.1F, 0.1F) + 0.8F * uv;
+  // The other half a whole map further on.
+  for (std::size_t c = 3 * 18; c < mesh.corner_count(); ++c) mesh.uvs[c].x() += 1.0F;
+  const TexelMap map(mesh, 0, 96, 96, 6);
+  const auto& gutter = map.gutter();
+  EXPECT_GT(gutter.size(), 3000U);
+  ASSERT_EQ(gutter.size() % 2, 0U);
+  for (std::size_t i = 0; i < gutter.size(); i += 2) {
+    const GutterTexel& first = gutter[i];
+    const GutterTexel& second = gutter[i + 1];
+    ASSERT_EQ(first.texel, second.texel);
+    EXPECT_NE(first.owner < 18, second.owner < 18);
+    const Vec3f a = position_at(mesh, {first.owner, first.border_b1, first.border_b2});
+    const Vec3f b = position_at(mesh, {second.owner, second.border_b1, second.border_b2});
+    EXPECT_LT((a - Vec3f(-b.x(), b.y(), b.z())).norm(), 1e-4F);
+    if (i > 0) {
+      EXPECT_LT(gutter[i - 1].texel, first.texel);
+    }
+  }
+}
+
+TEST(Gutter, ChartsSideBySideShareNothing) {
+  // Two charts 4 texels apart: those in the middle are as near to the one as to the other.
+  Mesh mesh = test::plane_two_charts(2);
+  for (std::size_t c = 0; c < mesh.corner_count(); ++c) {
+    const Vec3f& p = mesh.position(c);
+    mesh.uvs[c] =
+        Vec2f((p.x() < 0.5F || c < 24 ? 10.0F : 14.0F) + 40.0F * p.x(), 10.0F + 40.0F * p.y()) /
+        64.0F;
+  }
+  mesh.triangles.push_back(mesh.triangles[0]);  // overlaps, so that further borders are looked for
+  mesh.texture_sets.push_back(0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    mesh.uvs.push_back(mesh.uvs[c]);
+    mesh.normals.push_back(mesh.normals[c]);
+    mesh.tangents.push_back(mesh.tangents[c]);
+  }
+  const TexelMap map(mesh, 0, 64, 64, 4);
+  EXPECT_FALSE(map.shared().empty());
+  int between = 0;
+  std::uint32_t last = no_triangle;
+  for (const GutterTexel& g : map.gutter()) {
+    const Vec2d p = centre(g, map);
+    if (p.x() < 30.0 || p.x() > 34.0 || p.y() < 11.0 || p.y() > 49.0) continue;
+    ++between;
+    EXPECT_NE(g.texel, last);
+    last = g.texel;
+  }
+  EXPECT_EQ(between, 4 * 38);
 }
 
 TEST(Seams, CubeHasTwelveSeamsAndSixCharts) {
@@ -166,8 +241,10 @@ TEST(Seams, CubeHasTwelveSeamsAndSixCharts) {
     EXPECT_EQ(mesh.position(e.a0), mesh.position(e.b0));
     EXPECT_EQ(mesh.position(e.a1), mesh.position(e.b1));
     EXPECT_LT(e.triangle_a, e.triangle_b);
-    EXPECT_EQ(e.a0, 3 * e.triangle_a + static_cast<std::uint32_t>(e.edge_a));
-    EXPECT_EQ(e.b1, 3 * e.triangle_b + static_cast<std::uint32_t>(e.edge_b));
+    EXPECT_EQ(e.a0 / 3, e.triangle_a);
+    EXPECT_EQ(e.b1 / 3, e.triangle_b);
+    EXPECT_EQ(e.a1, next_corner(e.a0));
+    EXPECT_EQ(e.b0, next_corner(e.b1));
     EXPECT_NE(seams.chart[e.triangle_a], seams.chart[e.triangle_b]);
   }
 }

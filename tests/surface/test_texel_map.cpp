@@ -138,6 +138,25 @@ TEST(TexelMap, RepeatedTextureIsOwnedByBothHalvesOfTheQuad) {
   EXPECT_TRUE(map.gutter().empty());
 }
 
+/// The largest repetition that is allowed, of triangles of every shape: what a texel stands for
+/// lies in the triangle.
+TEST(TexelMap, FindsARepetitionOfEveryTexel) {
+  for (const Vec2f& apex : {Vec2f(0.0F, 0.0F), Vec2f(1000.0F, 3.0F), Vec2f(500.0F, 0.3F)}) {
+    MeshBuilder builder;
+    builder.triangle(corner(0.25F, 1000.0F), corner(1000.5F, 999.0F), corner(apex.x(), apex.y()));
+    const Mesh mesh = builder.finish();
+    const TexelMap map(mesh, 0, 16, 8);
+    EXPECT_EQ(owned_count(map), 16U * 8U);
+    EXPECT_LT(worst_centre_error(mesh, map), 0.02);
+  }
+}
+
+TEST(TexelMap, PlacesOfTexelsBeyondTwoToThe31) {
+  constexpr std::uint32_t index = 65535U * 65536U + 65533U;
+  EXPECT_EQ(texel_place(index, 65536).x, 65533);
+  EXPECT_EQ(texel_place(index, 65536).y, 65535);
+}
+
 TEST(TexelMap, MirroredHalvesShareEveryTexel) {
   const Mesh mesh = test::mirrored_pair(4);
   const TexelMap map(mesh, 0, 40, 40);

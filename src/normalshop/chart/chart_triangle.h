@@ -9,6 +9,7 @@
 
 #include "normalshop/chart/grid.h"
 #include "normalshop/core/normal_map.h"
+#include "normalshop/surface/frames.h"
 #include "normalshop/surface/texel_map.h"
 
 /// A triangle in chart axes, private to floor 4: what its pixels and texels share.
@@ -65,7 +66,9 @@ struct ChartTriangle {
       const Vec3f bitangent = sign * normal.cross(tangent);
       const float size = smallest_sine * smallest_sine * normal.squaredNorm();
       const float across = bitangent.squaredNorm();
-      if (!(across > size && across > size * tangent.squaredNorm())) return any_frame(normal);
+      if (!(across > size && across > size * tangent.squaredNorm())) {
+        return any_frame(normal.cast<double>());
+      }
       m.col(0) = tangent;
       m.col(1) = bitangent;
       m.col(2) = normal;
@@ -75,17 +78,6 @@ struct ChartTriangle {
       m.row(2) = view.direction.transpose();
       if (space == NormalSpace::Object) m *= node;
     }
-    return m;
-  }
-
-  static Mat3f any_frame(const Vec3f& normal) {
-    Eigen::Index axis = 0;
-    normal.cwiseAbs().minCoeff(&axis);
-    const Vec3f n = normal.isZero() ? Vec3f(Vec3f::UnitZ()) : Vec3f(normal.normalized());
-    Mat3f m;
-    m.col(0) = Vec3f::Unit(axis).cross(n).normalized();
-    m.col(1) = n.cross(m.col(0));
-    m.col(2) = n;
     return m;
   }
 };

@@ -1,7 +1,7 @@
 #include "normalshop/chart/edit_sampler.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 
 #include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/visible_weight.h"
@@ -32,6 +32,9 @@ Image<std::int32_t> dilate(const Image<std::uint8_t>& in) {
 
 EditSampler::EditSampler(const EditingChart& chart, const ChartEdit& edit)
     : chart_(chart), edit_(edit), region_(intersect(edit.region, edit.change.rect())) {
+  [[maybe_unused]] const Rect all{0, 0, chart.grid.width(), chart.grid.height()};
+  assert(chart.ids.depth.rect() == all && chart.weight.rect() == all);
+  assert(edit.change.rect() == all && (edit.coverage.empty() || edit.coverage.rect() == all));
   Image<std::uint8_t> exact((chart.grid.width() + block - 1) / block,
                             (chart.grid.height() + block - 1) / block, 0);
   parallel_for(static_cast<std::size_t>(exact.height()), 4, [&](std::size_t a, std::size_t b) {
@@ -97,10 +100,6 @@ bool EditSampler::read(TexelBatch& batch) const {
     const auto k = static_cast<std::size_t>(i);
     if (batch.weight[k] > 0.0F && !edit_.coverage.empty()) {
       batch.covered[k] = batch.weight[k] * coverage_at(batch.point.x[k], batch.point.y[k]);
-    }
-    // What is no number reaches no map.
-    if (!std::isfinite(batch.change_x[k] + batch.change_y[k] + batch.covered[k])) {
-      batch.change_x[k] = batch.change_y[k] = batch.covered[k] = 0.0F;
     }
     any = any || batch.acts(i);
   }

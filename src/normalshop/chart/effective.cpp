@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -15,15 +16,6 @@ namespace normalshop {
 namespace {
 
 constexpr float degrees = 3.14159265358979F / 180.0F;
-constexpr std::size_t rows_per_task = 16;
-
-template <class Body>
-void for_rows(int height, const Body& body) {
-  parallel_for(static_cast<std::size_t>(height), rows_per_task,
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
-               });
-}
 
 /// How much deeper the base surface gets from pixel to pixel along a row and down a column, in
 /// pixels. Grazing normals count as 80 degrees. Back faces are marked by `front` 0.
@@ -127,7 +119,10 @@ void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps) {
 }
 
 void compute_weight(EditingChart& chart, const EffectiveOptions& options) {
+  assert(options.full_angle >= 0.0F && options.full_angle < options.zero_angle &&
+         options.zero_angle <= 90.0F && options.step_falloff >= 0.0F);
   const int width = chart.grid.width();
+  assert(chart.base_normal.width() == width && chart.base_normal.height() == chart.grid.height());
   Image<std::uint8_t> steps;
   find_depth_steps(chart, steps);
   const float falloff = std::max(2.0F, options.step_falloff / chart.grid.pixel);
@@ -136,7 +131,7 @@ void compute_weight(EditingChart& chart, const EffectiveOptions& options) {
   chart.weight.resize(width, chart.grid.height());
   const float low = std::cos(options.zero_angle * degrees);
   const float high = std::cos(options.full_angle * degrees);
-  for_rows(chart.grid.height(), [&](int y) {
+  parallel_rows(chart.grid.height(), [&](int y) {
     for (int i = 0; i < across.pieces(); ++i) {
       const int begin = i * DistanceRows::piece;
       const int count = std::min(DistanceRows::piece, width - begin);

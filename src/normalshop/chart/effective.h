@@ -5,15 +5,15 @@
 namespace normalshop {
 
 /// The effective chart (thesis 5.4): 1 where the base surface faces the viewer and no depth step is
-/// near, falling smoothly to 0.
+/// near, falling smoothly to 0. 0 <= full_angle < zero_angle <= 90 and step_falloff >= 0.
 struct EffectiveOptions {
   float full_angle = 60.0F;    ///< degrees between base normal and viewing direction: up to here 1
   float zero_angle = 75.0F;    ///< degrees: from here 0
   float step_falloff = 0.01F;  ///< object units from a depth step at which the weight is 1 again
 };
 
-/// Fills chart.weight from chart.ids and chart.base_normal. A border of the surface against nothing
-/// is no depth step: an edit may run to the rim.
+/// Fills chart.weight from chart.ids and chart.base_normal, which must be of the grid's size. A
+/// border of the surface against nothing is no depth step: an edit may run to the rim.
 void compute_weight(EditingChart& chart, const EffectiveOptions& options);
 
 /// 1 where a depth step lies between the pixel and its neighbour to the right, below, left or

@@ -1,5 +1,6 @@
 #include "normalshop/chart/grid.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "normalshop/core/error.h"

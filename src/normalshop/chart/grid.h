@@ -38,7 +38,8 @@ struct ChartGrid {
 inline constexpr int max_chart_side = 8192;
 
 /// The window of `view` (its whole extent, or the part given in object units from its centre, y up)
-/// with pixels of that size. Throws InvalidInput when the view would be over 2 million pixels wide.
+/// with pixels of that size, or larger: see max_chart_side. Throws InvalidInput when the window
+/// would reach 2 million pixels of that size from the view's centre, or the size is not above 0.
 ChartGrid make_grid(const View& view, float pixel);
 ChartGrid make_grid(const View& view, float pixel, const Vec2f& low, const Vec2f& high);
 

@@ -4,41 +4,15 @@
 // After foreach_target, as Highway asks.
 #include <hwy/highway.h>
 
+#include "normalshop/chart/detail/lanes-inl.h"
 #include "normalshop/chart/pixel_row.h"
+#include "normalshop/core/normal_codes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace normalshop {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, PixelRow::padding>;
-using V = hn::Vec<D>;
-
-struct V3 {
-  V x;
-  V y;
-  V z;
-};
-
-HWY_INLINE V3 load(const PixelRow::Vectors& v, std::size_t i) {
-  const D d;
-  return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
-}
-
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-HWY_INLINE V3 scaled(const V3& a, V f) {
-  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
-}
-
-HWY_INLINE V mix(float origin, float f1, float f2, V b1, V b2) {
-  const D d;
-  return hn::Add(hn::Add(hn::Set(d, origin), hn::Mul(b1, hn::Set(d, f1))),
-                 hn::Mul(b2, hn::Set(d, f2)));
-}
+static_assert(PixelRow::padding >= lane_padding);
 
 HWY_INLINE void store_mix(const Mat3f& m, V b1, V b2, std::size_t i, PixelRow::Vectors& out) {
   const D d;
@@ -113,15 +87,14 @@ void base_normals(int count, const View& view, PixelRow& row) {
 void details(int count, PixelRow& row) {
   const D d;
   const V smallest = hn::Set(d, ChartTriangle::smallest_sine * ChartTriangle::smallest_sine);
+  const V shortest = hn::Set(d, codes::shortest_normal * codes::shortest_normal);
+  const V longest = hn::Set(d, codes::longest_normal * codes::longest_normal);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(d)) {
     const V3 n = load(row.normal, i);
     const V3 t = load(row.tangent, i);
     const V3 stored = load(row.stored, i);
     const V sign = hn::Load(d, &row.sign[i]);
-    const V3 b = scaled({hn::Sub(hn::Mul(n.y, t.z), hn::Mul(n.z, t.y)),
-                         hn::Sub(hn::Mul(n.z, t.x), hn::Mul(n.x, t.z)),
-                         hn::Sub(hn::Mul(n.x, t.y), hn::Mul(n.y, t.x))},
-                        sign);
+    const V3 b = scaled(cross(n, t), sign);
     const auto direct = hn::Eq(sign, hn::Zero(d));
     const auto mixed = [&](V tc, V bc, V nc, V sc) {
       const V sum =
@@ -135,9 +108,11 @@ void details(int count, PixelRow& row) {
     const auto regular =
         hn::Or(direct, hn::And(hn::Gt(across, size), hn::Gt(across, hn::Mul(size, dot(t, t)))));
     const V squared = dot(v, v);
-    const auto long_enough = hn::Gt(squared, hn::Set(d, 1e-12F));
+    const V length = dot(stored, stored);
+    const auto usable = hn::And(hn::And(hn::Ge(length, shortest), hn::Le(length, longest)),
+                                hn::Gt(squared, hn::Zero(d)));
     const auto seen = hn::Gt(hn::Load(d, &row.seen[i]), hn::Zero(d));
-    const auto fine = hn::And(regular, long_enough);
+    const auto fine = hn::And(regular, usable);
     hn::Store(hn::IfThenElseZero(hn::Or(fine, hn::Not(seen)), hn::Set(d, 1.0F)), d,
               &row.regular[i]);
     store_unit(v, squared, hn::And(fine, seen), &row.details[i]);

@@ -44,8 +44,8 @@ struct PixelRow {
   alignas(64) Lane u{};
   alignas(64) Lane v{};
   alignas(64) Lane seen{};     ///< 1 or 0
-  Vectors stored;              ///< what the map holds
-  alignas(64) Lane regular{};  ///< 0 where the frame has no inverse
+  Vectors stored;              ///< what the map holds; unit where it is in chart axes
+  alignas(64) Lane regular{};  ///< 0 where the frame has no inverse or the map no direction
   std::array<Vec3f, capacity + padding> base_normals;
   std::array<Vec3f, capacity + padding> details;
   Vectors color;

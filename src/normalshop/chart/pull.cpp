@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "normalshop/chart/pixel_row.h"
+#include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
@@ -135,7 +136,7 @@ void Pull::read_maps(const Run& run) {
   const Mat3f node = in_node ? mesh_.node_normals[run.node] : Mat3f(Mat3f::Identity());
   for (std::size_t i = begin; i < static_cast<std::size_t>(run.end); ++i) {
     const Vec3f stored(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]);
-    const Vec3f n = chart_.grid.view.to_chart(node * stored);
+    const Vec3f n = chart_.grid.view.to_chart(node * codes::direction_of(stored)).normalized();
     row_.stored.x[i] = n.x();
     row_.stored.y[i] = n.y();
     row_.stored.z[i] = n.z();
@@ -147,8 +148,9 @@ void Pull::read_maps(const Run& run) {
 Vec3f Pull::irregular_detail(std::size_t i) const {
   const Vec3f n(row_.normal.x[i], row_.normal.y[i], row_.normal.z[i]);
   const Vec3f stored(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]);
-  const Vec3f detail = row_.sign[i] == 0.0F ? stored : Vec3f(ChartTriangle::any_frame(n) * stored);
-  return detail.norm() > 1e-6F ? Vec3f(detail.normalized()) : row_.base_normals[i];
+  const Vec3f direction = codes::direction_of(stored);
+  if (direction.isZero() || row_.sign[i] == 0.0F) return row_.base_normals[i];
+  return (any_frame(n.cast<double>()) * direction).normalized();
 }
 
 }  // namespace

@@ -33,11 +33,6 @@ struct Tally {
 
 constexpr int tile_size = NormalMap::tile_size;
 
-struct Texel {
-  int x;
-  int y;
-};
-
 /// The push into one texture set.
 class SetPush {
  public:
@@ -74,9 +69,13 @@ class SetPush {
                   TexelBatch& batch) const;
   void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
   Tally edit_row(int y, Task& task);
+  bool is_taken(int x, int y) const;
   std::vector<TexelWrite> gutter_writes() const;
   std::vector<TexelWrite> shared_writes() const;
+  static void collect(const TexelBatch& batch, int i, std::uint32_t texel,
+                      std::vector<TexelWrite>& out);
   Vec3f own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
+  static SurfacePoint gutter_source(const GutterTexel& g);
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                       const PushTriangle& source, float strength) const;
   void edit_gutter(const PerLane<const GutterTexel*>& items, Cache& triangles, TexelBatch& batch,
@@ -86,16 +85,14 @@ class SetPush {
   void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
                             TexelBatch& batch) const;
   Tally write(const std::vector<TexelWrite>& writes);
-  Texel texel(std::uint32_t index) const {
-    const int width = set_.normals.width();
-    return {static_cast<int>(index) % width, static_cast<int>(index) / width};
-  }
+  TexelPlace texel(std::uint32_t index) const { return texel_place(index, set_.normals.width()); }
 
   const Mesh& mesh_;
   const EditSampler& sampler_;
   StorageSet& set_;
   NormalSpace space_;
   PushCandidates candidates_;
+  std::vector<TexelWrite> shared_;  // of texels that their owners leave to others
 };
 
 void SetPush::add_texels(std::uint32_t owner, int x, int y, int count, Cache& triangles,
@@ -170,11 +167,23 @@ Tally SetPush::edit_row(int y, Task& task) {
   for (int i = 0; i < batch.count; ++i) {
     if (!batch.acts(i)) continue;
     const auto k = static_cast<std::size_t>(i);
+    if (!shared_.empty() && is_taken(task.columns[k], y)) continue;
     set_.normals.set_normal(task.columns[k], y, batch.result.get(i));
     tally.largest = std::max(tally.largest, batch.turn[k]);
     ++tally.changed;
   }
   return tally;
+}
+
+/// Does another triangle than its owner decide what a texel gets?
+bool SetPush::is_taken(int x, int y) const {
+  const std::uint32_t index =
+      static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(set_.normals.width()) +
+      static_cast<std::uint32_t>(x);
+  const auto found =
+      std::lower_bound(shared_.begin(), shared_.end(), index,
+                       [](const TexelWrite& w, std::uint32_t t) { return w.texel < t; });
+  return found != shared_.end() && found->texel == index;
 }
 
 Tally SetPush::push_tile(const Rect& tile, Task& task) {
@@ -208,12 +217,17 @@ Vec3f SetPush::own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) c
   return frame.inverse() * base;
 }
 
+/// Where a gutter texel's edit is read: beside a hard edge on the chart's own side of it.
+SurfacePoint SetPush::gutter_source(const GutterTexel& g) {
+  return g.hard_edge ? SurfacePoint{g.owner, g.border_b1, g.border_b2} : g.source;
+}
+
 /// What a gutter texel held before the edit, in its own frame. Where the edit is weak that is its
 /// code; the stronger it is, the more the texel is grown anew from the surface that it stands for:
 /// else a filter would leave there what it takes away on the other side of the seam.
 Vec3f SetPush::gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                              const PushTriangle& source, float strength) const {
-  if (g.source.triangle == g.owner) return own;
+  if (g.hard_edge || g.source.triangle == g.owner) return own;
   const Vec3f weights(1.0F, g.source.b1, g.source.b2);
   const std::size_t corner = 3 * static_cast<std::size_t>(g.source.triangle);
   const Vec2f uv = interpolate(mesh_.uvs[corner], mesh_.uvs[corner + 1], mesh_.uvs[corner + 2],
@@ -234,38 +248,44 @@ void SetPush::edit_gutter(const PerLane<const GutterTexel*>& items, Cache& trian
     if (!batch.acts(i)) continue;
     const auto k = static_cast<std::size_t>(i);
     const GutterTexel& g = *items[k];
-    const PushTriangle source = triangles.get(g.source.triangle);
+    const PushTriangle source = triangles.get(gutter_source(g).triangle);
     const PushTriangle& owner = triangles.get(g.owner);
     const Vec3f weights(1.0F, g.owner_b1, g.owner_b2);
     const Mat3f frame = owner.frame(weights, owner.normals * weights, space_, sampler_.grid().view);
     batch.set_frame(i, frame);
     const auto [x, y] = texel(g.texel);
-    const float strength = std::hypot(batch.change_x[k], batch.change_y[k]) + batch.covered[k];
+    const float strength = Vec2f(batch.change_x[k], batch.change_y[k]).norm() + batch.covered[k];
     const Vec3f own = own_vector(x, y, batch.base.get(i), frame);
     batch.stored.set(i, gutter_vector(g, frame, own, source, strength));
   }
   apply(sampler_.mode(), batch);
   for (int i = 0; i < batch.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (batch.acts(i)) out.push_back({items[k]->texel, batch.result.get(i)});
+    collect(batch, i, items[static_cast<std::size_t>(i)]->texel, out);
   }
 }
 
+void SetPush::collect(const TexelBatch& batch, int i, std::uint32_t texel,
+                      std::vector<TexelWrite>& out) {
+  const auto k = static_cast<std::size_t>(i);
+  if (batch.acts(i)) out.push_back({texel, batch.weight[k], batch.turn[k], batch.result.get(i)});
+}
+
 /// A gutter texel takes the change of the surface point across the seam that it stands for, in the
-/// frame of the chart beside it, which decodes it.
+/// frame of the chart beside it, which decodes it. Beside a hard edge it takes that of the border.
 std::vector<TexelWrite> SetPush::gutter_writes() const {
   return collect_writes(
       set_.texels.gutter(), mesh_, sampler_.grid(),
-      [&](const GutterTexel& g) { return candidates_.contains(g.source.triangle); },
+      [&](const GutterTexel& g) { return candidates_.contains(gutter_source(g).triangle); },
       [&](const GutterTexel& g, Cache& triangles, TexelBatch& batch) {
-        batch.add_point(triangles.get(g.source.triangle), {1.0F, g.source.b1, g.source.b2});
+        const SurfacePoint p = gutter_source(g);
+        batch.add_point(triangles.get(p.triangle), {1.0F, p.b1, p.b2});
       },
       [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
         edit_gutter(items, triangles, batch, out);
       });
 }
 
-/// Where the owner's edit acts, it decides.
+/// Where the owner's edit acts with as large a weight, it decides.
 void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cache& triangles,
                                    TexelBatch& batch) const {
   TexelBatch owners;
@@ -280,8 +300,9 @@ void SetPush::drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, Cac
   }
   if (owners.count == 0 || !sampler_.read(owners)) return;
   for (int i = 0; i < owners.count; ++i) {
-    if (!owners.acts(i)) continue;
     const auto k = static_cast<std::size_t>(lanes[static_cast<std::size_t>(i)]);
+    const float weight = owners.weight[static_cast<std::size_t>(i)];
+    if (!owners.acts(i) || outweighs(batch.weight[k], weight)) continue;
     batch.change_x[k] = batch.change_y[k] = batch.covered[k] = 0.0F;
   }
 }
@@ -300,13 +321,11 @@ void SetPush::edit_shared(const PerLane<const SharedTexel*>& items, Cache& trian
   fill_frames(ids, batch);
   apply(sampler_.mode(), batch);
   for (int i = 0; i < batch.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (batch.acts(i)) out.push_back({items[k]->texel, batch.result.get(i)});
+    collect(batch, i, items[static_cast<std::size_t>(i)]->texel, out);
   }
 }
 
-/// Texels that further triangles cover: where the owner's edit does nothing, the first of them that
-/// the edit reaches decides.
+/// Texels that further triangles cover, which the chart sees more squarely than their owner.
 std::vector<TexelWrite> SetPush::shared_writes() const {
   return collect_writes(
       set_.texels.shared(), mesh_, sampler_.grid(),
@@ -323,10 +342,10 @@ std::vector<TexelWrite> SetPush::shared_writes() const {
 
 Tally SetPush::write(const std::vector<TexelWrite>& writes) {
   Tally tally;
-  for (std::size_t i = 0; i < writes.size(); ++i) {
-    if (i > 0 && writes[i].texel == writes[i - 1].texel) continue;
-    const auto [x, y] = texel(writes[i].texel);
-    set_.normals.set_normal(x, y, writes[i].normal);
+  for (const TexelWrite& w : writes) {
+    const auto [x, y] = texel(w.texel);
+    set_.normals.set_normal(x, y, w.normal);
+    tally.largest = std::max(tally.largest, w.turn);
     ++tally.changed;
   }
   return tally;
@@ -334,8 +353,10 @@ Tally SetPush::write(const std::vector<TexelWrite>& writes) {
 
 Tally SetPush::run() {
   // Before any texel changes: the gutter reads normals across its seams.
-  const std::vector<TexelWrite> shared = shared_writes();
-  const std::vector<TexelWrite> gutter = gutter_writes();
+  shared_ = shared_writes();
+  keep_strongest(shared_);
+  std::vector<TexelWrite> gutter = gutter_writes();
+  keep_strongest(gutter);
   const std::vector<Rect> tiles = candidates_.tiles();
   Tally tally;
   std::mutex mutex;
@@ -346,7 +367,7 @@ Tally SetPush::run() {
     const std::lock_guard lock(mutex);
     tally.add(local);
   });
-  tally.add(write(shared));
+  tally.add(write(shared_));
   tally.add(write(gutter));
   return tally;
 }

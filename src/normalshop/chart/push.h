@@ -21,15 +21,21 @@ struct ChartEdit {
 struct PushResult {
   std::size_t visited = 0;      ///< texels of triangles that may lie in the region
   std::size_t changed = 0;      ///< texels and gutter texels with a new normal
-  float largest_change = 0.0F;  ///< degrees
+  float largest_change = 0.0F;  ///< degrees by which the edit turned one of them at most
 };
 
 /// Carries an edit back by gathering: every texel of the storage atlas that the chart sees within
 /// the region projects its base point into the chart, is dropped where something nearer hides it,
 /// and reads change, coverage and chart.weight there (bicubic, bilinear). A texel for which nothing
 /// changes is not written, so it keeps its code. Gutter texels take what happens at the surface
-/// point that they stand for. Texels shared by several triangles take the first one's edit that
-/// reaches them. Deterministic for any number of threads.
+/// point that they stand for, beside a hard edge at their own side's border. Texels shared by
+/// several triangles, and the gutter that these share, take the edit of the one with the largest
+/// chart.weight, of equal ones the first; of a triangle on which the map repeats, only the
+/// repetition that TexelMap::surface_point() tells carries its edit. Deterministic for any number
+/// of threads.
+///
+/// The chart has its weight (compute_weight()), and change and coverage are of its size. Every
+/// texture set of the mesh has its set in the storage, whose texels are of the size of its normals.
 ///
 /// Source: thesis 5.3.3, with differences gathered by texels instead of values scattered by pixels.
 PushResult push(const Mesh& mesh, const EditingChart& chart, const ChartEdit& edit,

@@ -16,8 +16,6 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int unit = 256;  // steps a pixel
-
 using Vertex = Rasterizer::Vertex;
 
 /// Pixels of the tile that a triangle may cover, inclusive, relative to the tile.
@@ -55,13 +53,10 @@ Plane depth_plane(const Vertex& a, const Vertex& b, const Vertex& c, const TileR
 }
 
 Box pixel_box(const Vertex& a, const Vertex& b, const Vertex& c, const TileRect& rect) {
-  const int half = unit / 2;
-  const auto first = [&](int v) { return (v + half - 1) >> 8; };  // centres at v or after
-  const auto last = [&](int v) { return (v - half) >> 8; };
-  return {std::max(first(std::min({a.x, b.x, c.x})) - rect.x, 0),
-          std::max(first(std::min({a.y, b.y, c.y})) - rect.y, 0),
-          std::min(last(std::max({a.x, b.x, c.x})) - rect.x, rect.width - 1),
-          std::min(last(std::max({a.y, b.y, c.y})) - rect.y, rect.height - 1)};
+  const Rect covered =
+      covered_pixels(a, b, c, {rect.x, rect.y, rect.x + rect.width, rect.y + rect.height});
+  return {covered.x0 - rect.x, covered.y0 - rect.y, covered.x1 - 1 - rect.x,
+          covered.y1 - 1 - rect.y};
 }
 
 /// An edge function dx * (y - py) - dy * (x - px) >= 0 inside, with the top-left rule folded in.

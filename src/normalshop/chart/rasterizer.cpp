@@ -13,21 +13,12 @@ namespace normalshop {
 namespace {
 
 using raster::block_size;
+using raster::covered_pixels;
 using raster::tile_size;
 using Vertex = Rasterizer::Vertex;
 
 constexpr std::size_t chunk_size = 16384;
 constexpr float nothing = -std::numeric_limits<float>::infinity();
-
-/// Pixels whose centres lie in a triangle's box; empty when x1 <= x0 or y1 <= y0.
-inline Rect covered_pixels(const Vertex& a, const Vertex& b, const Vertex& c, int width,
-                           int height) {
-  const auto first = [](int u, int v, int w) { return (std::min(std::min(u, v), w) + 127) >> 8; };
-  const auto last = [](int u, int v, int w) { return (std::max(std::max(u, v), w) - 128) >> 8; };
-  return {std::max(first(a.x, b.x, c.x), 0), std::max(first(a.y, b.y, c.y), 0),
-          std::min(last(a.x, b.x, c.x), width - 1) + 1,
-          std::min(last(a.y, b.y, c.y), height - 1) + 1};
-}
 
 std::int64_t twice_area(const Vertex& a, const Vertex& b, const Vertex& c) {
   return std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(c.x - a.x) * (b.y - a.y);
@@ -141,7 +132,7 @@ void Rasterizer::bin_front(const Mesh& mesh) {
         const Vertex& a = vertices_[index[0]];
         const Vertex& b = vertices_[index[1]];
         const Vertex& c = vertices_[index[2]];
-        const Rect pixels = covered_pixels(a, b, c, width_, height_);
+        const Rect pixels = covered_pixels(a, b, c, {0, 0, width_, height_});
         if (pixels.empty()) continue;
         const std::int64_t area = twice_area(a, b, c);
         const auto id = static_cast<std::uint32_t>(t);
@@ -166,7 +157,7 @@ void Rasterizer::bin_back(const Mesh& mesh) {
         const Vertex& a = vertices_[index[0]];
         const Vertex& b = vertices_[index[1]];
         const Vertex& c = vertices_[index[2]];
-        const Rect pixels = covered_pixels(a, b, c, width_, height_);
+        const Rect pixels = covered_pixels(a, b, c, {0, 0, width_, height_});
         if (hidden(farthest_, pixels, std::max({a.z, b.z, c.z}))) continue;
         add_to_tiles(chunk, pixels, tile_columns_, id);
       }

@@ -131,6 +131,20 @@ Vec3f chart_color(std::uint32_t chart) {
   return {part(1), part(2), part(3)};
 }
 
+EffectiveOptions weight_options(const Scene& scene) {
+  EffectiveOptions effective;
+  effective.step_falloff = 0.004F * bounds(scene.mesh).diagonal();
+  return effective;
+}
+
+/// Rows of the picture above and below a band that its pixels depend on.
+int margin_rows(const Scene& scene) {
+  if (scene.options.style != RenderStyle::Weight) return 0;
+  // A depth step lowers the weight within the falloff, which is at least 2 of the chart's pixels.
+  const float rows = weight_options(scene).step_falloff / scene.pixel;
+  return static_cast<int>(std::min(std::ceil(rows), 16384.0F)) + 2;
+}
+
 /// Replaces the albedo by what the style shows on the lit surface.
 void paint_style(const Scene& scene, EditingChart& chart) {
   if (scene.options.style == RenderStyle::Charts) {
@@ -142,9 +156,7 @@ void paint_style(const Scene& scene, EditingChart& chart) {
     }
   }
   if (scene.options.style == RenderStyle::Weight) {
-    EffectiveOptions effective;
-    effective.step_falloff = 0.004F * bounds(scene.mesh).diagonal();
-    compute_weight(chart, effective);
+    compute_weight(chart, weight_options(scene));
     for (int y = 0; y < chart.grid.height(); ++y) {
       for (int x = 0; x < chart.grid.width(); ++x) {
         const float w = chart.weight(x, y);
@@ -182,9 +194,13 @@ void color_band(const Scene& scene, int y0, int y1, EditingChart& chart, ColorSp
         enlarge(scene.shadow, y0, y1, scene.samples), target, shading);
 }
 
+/// Rows y0 to y1 of the picture.
 void draw_band(const Scene& scene, int y0, int y1, Rasterizer& rasterizer, EditingChart& chart,
                ColorSpan picture) {
-  chart.grid = band_grid(scene, y0, y1);
+  const int margin = margin_rows(scene);
+  const int first = std::max(y0 - margin, 0);
+  const int last = std::min(y1 + margin, picture.height());
+  chart.grid = band_grid(scene, first, last);
   rasterizer.rasterize(scene.mesh, chart.grid, chart.ids);
   PullOptions pulled;
   pulled.albedo = true;
@@ -192,15 +208,15 @@ void draw_band(const Scene& scene, int y0, int y1, Rasterizer& rasterizer, Editi
   const int n = scene.samples;
   ColorImage fine(chart.grid.width(), chart.grid.height());
   for (int y = 0; y < fine.height(); ++y) {
-    for (int x = 0; x < fine.width(); ++x) fine(x, y) = scene.background(x / n, y0 + y / n);
+    for (int x = 0; x < fine.width(); ++x) fine(x, y) = scene.background(x / n, first + y / n);
   }
-  color_band(scene, y0, y1, chart, fine);
+  color_band(scene, first, last, chart, fine);
   const float share = 1.0F / static_cast<float>(n * n);
   for (int y = y0; y < y1; ++y) {
     for (int x = 0; x < picture.width(); ++x) {
       Vec3f sum = Vec3f::Zero();
       for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < n; ++i) sum += fine(x * n + i, (y - y0) * n + j);
+        for (int i = 0; i < n; ++i) sum += fine(x * n + i, (y - first) * n + j);
       }
       picture(x, y) = sum * share;
     }
@@ -235,10 +251,8 @@ ColorImage render(const Mesh& mesh, const StorageAtlas& storage, const View& vie
   ColorImage picture(options.width, options.height);
   Rasterizer rasterizer;
   EditingChart chart;
-  // The weight looks around each pixel, so it needs the picture in one piece.
-  const int rows = options.style == RenderStyle::Weight ? options.height : band_rows;
-  for (int y = 0; y < options.height; y += rows) {
-    draw_band(scene, y, std::min(y + rows, options.height), rasterizer, chart, picture);
+  for (int y = 0; y < options.height; y += band_rows) {
+    draw_band(scene, y, std::min(y + band_rows, options.height), rasterizer, chart, picture);
   }
   return picture;
 }

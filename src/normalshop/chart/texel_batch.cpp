@@ -4,6 +4,7 @@
 // After foreach_target, as Highway asks.
 #include <hwy/highway.h>
 
+#include "normalshop/chart/detail/lanes-inl.h"
 #include "normalshop/chart/texel_batch.h"
 #include "normalshop/core/normal_codes.h"
 
@@ -11,21 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace normalshop {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, TexelBatch::padding>;
-using V = hn::Vec<D>;
-
-struct V3 {
-  V x;
-  V y;
-  V z;
-};
-
-HWY_INLINE V3 load(const TexelBatch::Vectors& v, std::size_t i) {
-  const D d;
-  return {hn::Load(d, &v.x[i]), hn::Load(d, &v.y[i]), hn::Load(d, &v.z[i])};
-}
+static_assert(TexelBatch::padding >= lane_padding);
 
 HWY_INLINE void store(const V3& v, TexelBatch::Vectors& out, std::size_t i) {
   const D d;
@@ -34,32 +21,12 @@ HWY_INLINE void store(const V3& v, TexelBatch::Vectors& out, std::size_t i) {
   hn::Store(v.z, d, &out.z[i]);
 }
 
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-HWY_INLINE V3 scaled(const V3& a, V f) {
-  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
-}
-
 HWY_INLINE V3 sum(const V3& a, const V3& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
 
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
-          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-
 HWY_INLINE V3 unit(const V3& a) {
   return scaled(a, hn::Div(hn::Set(D(), 1.0F), hn::Sqrt(dot(a, a))));
-}
-
-HWY_INLINE V mix(float origin, float f1, float f2, V b1, V b2) {
-  const D d;
-  return hn::Add(hn::Add(hn::Set(d, origin), hn::Mul(b1, hn::Set(d, f1))),
-                 hn::Mul(b2, hn::Set(d, f2)));
 }
 
 HWY_INLINE V3 mix(const Mat3f& m, V b1, V b2) {
@@ -98,7 +65,7 @@ void add_run_lanes(const PushTriangle& t, const TexelAffine& affine, int x, int 
     hn::StoreU(hn::Set(d, t.sign), d, &batch.sign[k]);
     hn::StoreU(hn::Set(d, t.depth_step.x()), d, &batch.depth_dx[k]);
     hn::StoreU(hn::Set(d, t.depth_step.y()), d, &batch.depth_dy[k]);
-    hn::StoreU(hn::Set(d, t.tolerance), d, &batch.tolerance[k]);
+    hn::StoreU(hn::Set(d, t.steepness), d, &batch.steepness[k]);
   }
   batch.count += count;
 }
@@ -135,6 +102,19 @@ HWY_INLINE void view_slopes(const V3& n, V& x, V& y) {
   y = hn::Mul(n.y, inverse);
 }
 
+HWY_INLINE V select(hn::Mask<D> mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
+
+/// What an edit makes of normals beyond the horizon of its direction, which count as those on it:
+/// they keep their distance from these as far as they are not covered, so that a small edit turns
+/// them by little.
+HWY_INLINE V3 beyond_horizon(hn::Mask<D> beyond, const V3& before, const V3& on_horizon,
+                             const V3& after, const Edit2& e) {
+  const V kept = hn::Sub(hn::Set(D(), 1.0F), e.covered);
+  const V3 distance = sum(before, scaled(on_horizon, hn::Set(D(), -1.0F)));
+  const V3 v = unit(sum(after, scaled(distance, kept)));
+  return {select(beyond, v.x, after.x), select(beyond, v.y, after.y), select(beyond, v.z, after.z)};
+}
+
 HWY_INLINE V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) {
   V x;
   V y;
@@ -144,7 +124,11 @@ HWY_INLINE V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) 
   view_slopes(base, base_x, base_y);
   const V moved_x = hn::Add(e.change_x, hn::Mul(e.covered, hn::Sub(base_x, x)));
   const V moved_y = hn::Add(e.change_y, hn::Mul(e.covered, hn::Sub(base_y, y)));
-  return unit({hn::Neg(hn::Add(x, moved_x)), hn::Neg(hn::Add(y, moved_y)), hn::Set(D(), 1.0F)});
+  const V one = hn::Set(D(), 1.0F);
+  const V3 after = unit({hn::Neg(hn::Add(x, moved_x)), hn::Neg(hn::Add(y, moved_y)), one});
+  const auto beyond = hn::Lt(before.z, hn::Set(D(), min_cosine));
+  if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return after;
+  return beyond_horizon(beyond, before, unit({hn::Neg(x), hn::Neg(y), one}), after, e);
 }
 
 HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) {
@@ -157,19 +141,22 @@ HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) 
   const V h_x = hn::Add(hn::Mul(hn::Sub(sg.x, hn::Mul(base.x, z)), kept), e.change_x);
   const V h_y = hn::Add(hn::Mul(hn::Sub(sg.y, hn::Mul(base.y, z)), kept), e.change_y);
   const V turned = hn::Add(hn::Mul(h_x, base.x), hn::Mul(h_y, base.y));
-  return unit({hn::Sub(base.x, hn::Sub(h_x, hn::Mul(turned, base.x))),
-               hn::Sub(base.y, hn::Sub(h_y, hn::Mul(turned, base.y))),
-               hn::Add(base.z, hn::Mul(turned, base.z))});
+  const V3 after = unit({hn::Sub(base.x, hn::Sub(h_x, hn::Mul(turned, base.x))),
+                         hn::Sub(base.y, hn::Sub(h_y, hn::Mul(turned, base.y))),
+                         hn::Add(base.z, hn::Mul(turned, base.z))});
+  const auto beyond = hn::Lt(along, least);
+  if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return after;
+  return beyond_horizon(beyond, before, unit(sum(base, scaled(sg, hn::Set(D(), -1.0F)))), after, e);
 }
-
-HWY_INLINE V select(hn::Mask<D> mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
 
 /// The detailed normal; the base normal where the code holds no direction.
 HWY_INLINE V3 before_edit(const V3& t, const V3& b, const V3& n, const V3& stored, const V3& base) {
   const D d;
   constexpr float shortest = codes::shortest_normal * codes::shortest_normal;
+  constexpr float longest = codes::longest_normal * codes::longest_normal;
   const V length = dot(stored, stored);
-  const auto usable = hn::And(hn::Ge(length, hn::Set(d, shortest)), hn::IsFinite(length));
+  const auto usable =
+      hn::And(hn::Ge(length, hn::Set(d, shortest)), hn::Le(length, hn::Set(d, longest)));
   const V3 v = unit(sum(sum(scaled(t, stored.x), scaled(b, stored.y)), scaled(n, stored.z)));
   return {select(usable, v.x, base.x), select(usable, v.y, base.y), select(usable, v.z, base.z)};
 }
@@ -219,20 +206,15 @@ void PushTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t t
   const Vec3f across = points.col(1).cross(points.col(2));
   const float facing = std::abs(across.z());
   const float steep = across.head<2>().norm();
-  constexpr float steepest = 20.0F;
   // Pixels to depth: the plane's gradient is -across.xy / across.z.
-  const float limit = steepest * grid.pixel;
+  const float limit = steepest_surface * grid.pixel;
   depth_step.setZero();
   if (facing > 0.0F) {
     depth_step = -across.head<2>() / across.z();
     if (!(steep <= limit * facing)) depth_step *= limit * facing / steep;
   }
   if (!depth_step.allFinite()) depth_step.setZero();
-  // The surface may bend away by as much as the steeper of plane and base normals is steep.
-  const float least =
-      std::min({normals(2, 0), normals(2, 0) + normals(2, 1), normals(2, 0) + normals(2, 2)});
-  const float bent = std::min(1.0F / std::max(least, 1e-6F), steepest) - 1.0F;
-  tolerance = grid.pixel + std::max(depth_step.norm(), bent * grid.pixel);
+  steepness = depth_step.norm();
 }
 
 void TexelBatch::add_point(const PushTriangle& triangle, const Vec3f& weights) {
@@ -244,7 +226,7 @@ void TexelBatch::add_point(const PushTriangle& triangle, const Vec3f& weights) {
   sign[k] = triangle.sign;
   depth_dx[k] = triangle.depth_step.x();
   depth_dy[k] = triangle.depth_step.y();
-  tolerance[k] = triangle.tolerance;
+  steepness[k] = triangle.steepness;
   ++count;
 }
 
@@ -257,7 +239,7 @@ void finish_frames(TexelBatch& batch) {
   if (HWY_DYNAMIC_DISPATCH(finish_frame_lanes)(batch)) return;
   for (int i = 0; i < batch.count; ++i) {
     if (batch.regular[static_cast<std::size_t>(i)] != 0.0F) continue;
-    batch.set_frame(i, ChartTriangle::any_frame(batch.normal.get(i)));
+    batch.set_frame(i, any_frame(batch.normal.get(i).cast<double>()));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "normalshop/chart/chart_triangle.h"
 #include "normalshop/chart/details.h"
@@ -8,10 +9,13 @@
 /// Push's arithmetic for many texels at once, private to floor 4.
 namespace normalshop {
 
+/// Surface steeper than this, in depth per length, counts as this steep.
+inline constexpr float steepest_surface = 20.0F;
+
 /// A triangle with what its points need to be found in the chart's depth.
 struct PushTriangle : ChartTriangle {
   Vec2f depth_step = Vec2f::Zero();  ///< of its plane, per pixel; limited on edge-on triangles
-  float tolerance = 0.0F;            ///< depths this far off the plane show it still
+  float steepness = 0.0F;            ///< its length
 
   void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle);
 };
@@ -45,7 +49,7 @@ struct TexelBatch {
   Vectors base;   ///< along the base normal
   alignas(64) Lane depth_dx{};
   alignas(64) Lane depth_dy{};
-  alignas(64) Lane tolerance{};
+  alignas(64) Lane steepness{};
   // The edit there: filled by EditSampler::read(), all 0 where nothing happens.
   alignas(64) Lane weight{};  ///< of the effective chart; 0 where the chart does not see the point
   alignas(64) Lane change_x{};  ///< change times weight
@@ -62,9 +66,11 @@ struct TexelBatch {
   Vectors result;           ///< unit
   alignas(64) Lane turn{};  ///< 1 - cos of the angle between before and after
 
+  /// Does the edit do anything there? What is no number or has no unit normal does not.
   bool acts(int i) const {
     const auto k = static_cast<std::size_t>(i);
-    return covered[k] > 0.0F || change_x[k] != 0.0F || change_y[k] != 0.0F;
+    const float size = std::abs(change_x[k]) + std::abs(change_y[k]) + covered[k];
+    return size > 0.0F && size < 1e18F;
   }
   void set_frame(int i, const Mat3f& frame) {
     tangent.set(i, frame.col(0));
@@ -84,7 +90,8 @@ void finish_frames(TexelBatch& batch);
 
 /// Fills result and turn of the texels that the edit acts on: gradient_from_normal(), the edit,
 /// normal_from_gradient() and the exact inverse of the frame. A texel whose stored vector has no
-/// direction counts as undetailed.
+/// direction counts as undetailed; one beyond the horizon of the edit's direction stays as far
+/// beyond it.
 void apply(EditMode mode, TexelBatch& batch);
 
 }  // namespace normalshop

@@ -13,8 +13,26 @@ namespace normalshop {
 /// A listed texel and its new normal.
 struct TexelWrite {
   std::uint32_t texel;  ///< y * width + x
+  float weight;         ///< of the effective chart
+  float turn;           ///< 1 - cos of the angle between before and after
   Vec3f normal;
 };
+
+/// Is a weight larger than another by more than rounding?
+inline bool outweighs(float weight, float other) { return weight > other + 1e-3F; }
+
+/// One write a texel: that of the largest weight, of equal ones the first. `writes` by texel.
+inline void keep_strongest(std::vector<TexelWrite>& writes) {
+  std::size_t count = 0;
+  for (const TexelWrite& w : writes) {
+    if (count == 0 || writes[count - 1].texel != w.texel) {
+      writes[count++] = w;
+    } else if (outweighs(w.weight, writes[count - 1].weight)) {
+      writes[count - 1] = w;
+    }
+  }
+  writes.resize(count);
+}
 
 /// The texels of a batch, by lane.
 template <class T>

@@ -74,6 +74,21 @@ HWY_INLINE void add_pixel(const EditingChart& chart, VI x, VI y, V expected, V t
   sum.share = hn::Add(sum.share, hn::IfThenElseZero(shows, share));
 }
 
+/// Depths this far off the plane still show the points.
+HWY_INLINE V tolerated(float pixel, const TexelBatch& batch, std::size_t i, M active) {
+  const D d;
+  const V bx = hn::Load(d, &batch.base.x[i]);
+  const V by = hn::Load(d, &batch.base.y[i]);
+  const V bz = hn::Load(d, &batch.base.z[i]);
+  const V one = hn::Set(d, 1.0F);
+  const V length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(bx, bx), hn::Mul(by, by)), hn::Mul(bz, bz)));
+  const V cosine = hn::IfThenElse(active, bz, one);
+  const V steepest = hn::Set(d, steepest_surface);
+  const V bent = hn::Sub(hn::Min(hn::Div(length, cosine), steepest), one);
+  const V pixels = hn::Set(d, pixel);
+  return hn::Add(pixels, hn::Max(hn::Load(d, &batch.steepness[i]), hn::Mul(bent, pixels)));
+}
+
 HWY_INLINE V weight_around(const EditingChart& chart, const TexelBatch& batch, std::size_t i,
                            M active) {
   const D d;
@@ -86,7 +101,7 @@ HWY_INLINE V weight_around(const EditingChart& chart, const TexelBatch& batch, s
   const V fy = hn::Sub(y, top);
   const V dx = hn::Load(d, &batch.depth_dx[i]);
   const V dy = hn::Load(d, &batch.depth_dy[i]);
-  const V tolerance = hn::Load(d, &batch.tolerance[i]);
+  const V tolerance = tolerated(chart.grid.pixel, batch, i, active);
   const V corner =
       hn::Sub(hn::Sub(hn::Load(d, &batch.point.z[i]), hn::Mul(fx, dx)), hn::Mul(fy, dy));
   // A point exactly on a pixel's border must not lose all its pixels.

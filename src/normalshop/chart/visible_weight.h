@@ -10,9 +10,11 @@ namespace normalshop {
 
 /// Fills batch.weight: the effective chart's weight around each point, read only from the pixels
 /// that show the point's surface, namely those whose depth is what the triangle's plane has there,
-/// within what the surface may bend over a pixel. 0 where no pixel around the point does (something
-/// nearer hides it), where the base surface is seen at a grazing angle, and in blocks of 8 x 8
-/// pixels that `blocks` marks with 0. False when all are 0.
+/// within what the surface may bend over a pixel: as much as the steeper of the plane and of the
+/// base normal at the point is steep, and a pixel more. 0 where no pixel around the point does
+/// (something nearer hides it), where the base surface is seen at a grazing angle, and in blocks of
+/// 8 x 8 pixels that `blocks` marks with 0. False when no point is of the front and in a marked
+/// block, where all are 0.
 bool read_visible_weight(const EditingChart& chart, const Image<std::int32_t>& blocks,
                          TexelBatch& batch);
 

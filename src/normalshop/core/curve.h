@@ -7,7 +7,8 @@
 namespace normalshop {
 
 /// A function through points, continuous with its derivative, that never overshoots them
-/// (monotone cubic Hermite, Fritsch and Carlson 1980). Constant outside the first and last point.
+/// (monotone cubic Hermite with weighted harmonic means of the neighbouring slopes as tangents,
+/// Fritsch and Butland 1984). Constant outside the first and last point.
 class Curve {
  public:
   Curve() = default;

@@ -8,25 +8,11 @@
 
 namespace normalshop {
 
-namespace {
-
-constexpr std::size_t rows_per_task = 16;
-
-template <class Body>
-void for_rows(int height, const Body& body) {
-  parallel_for(static_cast<std::size_t>(height), rows_per_task,
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
-               });
-}
-
-}  // namespace
-
 DistanceRows::DistanceRows(const Image<std::uint8_t>& set, int limit)
     : limit_(limit),
       squared_(set.width(), set.height()),
       used_((set.width() + piece - 1) / piece, set.height(), 0) {
-  for_rows(set.height(), [&](int y) { fill(set, y); });
+  parallel_rows(set.height(), [&](int y) { fill(set, y); });
 }
 
 void DistanceRows::fill(const Image<std::uint8_t>& set, int y) {
@@ -88,7 +74,7 @@ bool DistanceRows::read(int y, int i, float* out) const {
 void distance_to(const Image<std::uint8_t>& set, int limit, MaskImage& distance) {
   const DistanceRows rows(set, limit);
   distance.resize(set.width(), set.height());
-  for_rows(set.height(), [&](int y) {
+  parallel_rows(set.height(), [&](int y) {
     for (int i = 0; i < rows.pieces(); ++i) {
       const int begin = i * DistanceRows::piece;
       float* out = distance.row(y) + begin;

@@ -1,7 +1,9 @@
 #include "normalshop/core/normal_codes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace normalshop {
 
@@ -51,8 +53,11 @@ Vec3f decode(const Code* code, const NormalConvention& convention, const CodeRan
 Vec3f storable(Vec3f v, const NormalConvention& convention, bool bounded) {
   v.head<2>() /= convention.scale;
   const float largest = v.cwiseAbs().maxCoeff();
-  if (!(largest <= 1e18F) || !v.allFinite()) return Vec3f::Zero();
-  if (convention.two_channel) return v.isZero() ? v : Vec3f(v.normalized());
+  if (!(largest <= codes::longest_normal) || !v.allFinite()) return Vec3f::Zero();
+  if (convention.two_channel) {
+    const Vec3f held(v.x(), v.y(), std::max(v.z(), 0.0F));  // not mirrored
+    return held.isZero() ? held : Vec3f(held.normalized());
+  }
   return bounded && largest > 1.0F ? Vec3f(v / largest) : v;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "normalshop/core/normal_map.h"
@@ -7,7 +8,9 @@
 /// Rows of codes to rows of vectors and back: what NormalMap is made of. Vectors have y up.
 namespace normalshop::codes {
 
+/// Decoded vectors that are shorter or longer hold no direction.
 inline constexpr float shortest_normal = 0.25F;
+inline constexpr float longest_normal = 1e18F;
 
 inline int normal_channels(const NormalConvention& convention) {
   return convention.two_channel ? 2 : 3;
@@ -16,7 +19,7 @@ inline int normal_channels(const NormalConvention& convention) {
 /// The unit normal of a decoded vector; zero where it holds no direction.
 inline Vec3f direction_of(const Vec3f& v) {
   const float length = v.norm();
-  if (!(length >= shortest_normal) || !std::isfinite(length)) return Vec3f::Zero();
+  if (!(length >= shortest_normal && length <= longest_normal)) return Vec3f::Zero();  // NaN too
   return v / length;
 }
 
@@ -30,7 +33,8 @@ void decode_row(const RawImage& image, const NormalConvention& convention, int x
 
 /// Writes vectors[0] to vectors[count - 1] as the codes of texels x0 on. What codes of this type
 /// can't hold keeps its direction: vectors beyond -1..1 are shortened, two-channel codes take unit
-/// vectors, and what is not finite becomes the zero vector.
+/// vectors, and what is not finite becomes the zero vector. Two-channel codes have no z below 0:
+/// such vectors go to the horizon, straight up or down.
 void encode_texels(const Vec3f* vectors, int count, const NormalConvention& convention,
                    RawImage& image, int x0, int y);
 

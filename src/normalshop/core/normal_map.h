@@ -64,7 +64,7 @@ class NormalMap {
   const RawImage& codes() const { return codes_; }
 
   /// Edited normal where there is one, else the decoded code; unit. Zero where the code holds no
-  /// direction (not finite, or shorter than 0.25).
+  /// direction (not finite, shorter than 0.25 or longer than 1e18).
   Vec3f normal(int x, int y) const;
   /// Like normal(), but as the code's vector with its own length: what a renderer interpolates.
   Vec3f vector(int x, int y) const;

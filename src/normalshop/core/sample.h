@@ -21,12 +21,12 @@ T zero() {
 }
 
 /// The position that is read for x in a row of n > 0 pixels: in [0, n - 1], or in [0, n] where the
-/// image repeats.
+/// image repeats. What is no number reads the first pixel.
 template <Border border>
 float position_inside(float x, int n) {
   static_assert(border != Border::Mirror, "the mirror image of a slope has another sign");
   const auto size = static_cast<float>(n);
-  if constexpr (border == Border::Clamp) return std::clamp(x, 0.0F, size - 1.0F);
+  if constexpr (border == Border::Clamp) return x > 0.0F ? std::min(x, size - 1.0F) : 0.0F;
   return std::abs(x) < 1e9F ? std::clamp(x - size * std::floor(x / size), 0.0F, size) : 0.0F;
 }
 

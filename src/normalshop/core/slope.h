@@ -28,20 +28,6 @@ inline Vec3f normal_from_slope(const Vec2f& slope) {
   return {-slope.x() * inverse, -slope.y() * inverse, inverse};
 }
 
-/// Surface gradient of n with respect to the unit direction d: sg = d - n / <d, n>, a vector in the
-/// plane of d. d = viewing direction gives the slopes, d = base normal the detail gradient.
-inline Vec3f surface_gradient(const Vec3f& n, const Vec3f& d) {
-  const float c = std::max(n.dot(d), min_cosine * n.norm());
-  if (!(c > 0.0F)) return Vec3f::Zero();
-  const Vec3f in_plane = n - n.dot(d) * d;
-  return -in_plane / c;
-}
-
-/// Unit normal with the given surface gradient with respect to the unit direction d.
-inline Vec3f normal_from_surface_gradient(const Vec3f& gradient, const Vec3f& d) {
-  return (d - gradient).normalized();
-}
-
 /// Angle in degrees between two directions (exact for small angles too).
 inline double angle_degrees(const Vec3f& a, const Vec3f& b) {
   const Vec3d u = a.cast<double>().normalized();

@@ -45,9 +45,11 @@ RawImage convert_space(const Mesh& mesh, const TexelMap& texels, const NormalMap
       codes::copy_other_channels(map.codes(), y, columns, out, y, channels);
     }
   });
+  std::uint32_t done = no_triangle;
   for (const GutterTexel& g : texels.gutter()) {
-    const int x = static_cast<int>(g.texel) % width;
-    const int y = static_cast<int>(g.texel) / width;
+    if (g.texel == done) continue;  // the owner's entry comes first
+    done = g.texel;
+    const auto [x, y] = texel_place(g.texel, width);
     const SurfacePoint point{g.owner, g.owner_b1, g.owner_b2};
     const Vec3f n = convert(mesh, point, map.normal(x, y), from, to.space);
     codes::encode_texels(&n, 1, to, out, x, y);

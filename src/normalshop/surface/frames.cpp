@@ -36,18 +36,6 @@ Vec3d interpolated_normal(const Mesh& mesh, const SurfacePoint& point) {
   return n.squaredNorm() > min_frame_size * min_frame_size ? n : geometric_normal(mesh, point);
 }
 
-Mat3f orthonormal_frame(const Vec3d& unit_normal) {
-  // The axis least along the normal, so that the cross product is well away from zero.
-  Eigen::Index axis = 0;
-  unit_normal.cwiseAbs().minCoeff(&axis);
-  const Vec3d tangent = Vec3d::Unit(axis).cross(unit_normal).normalized();
-  Mat3f frame;
-  frame.col(0) = tangent.cast<float>();
-  frame.col(1) = unit_normal.cross(tangent).cast<float>();
-  frame.col(2) = unit_normal.cast<float>();
-  return frame;
-}
-
 Vec3f unit_or_zero(const Vec3d& v) {
   const double length = v.norm();
   return length > 0.0 ? Vec3f((v / length).cast<float>()) : Vec3f(Vec3f::Zero());
@@ -69,6 +57,19 @@ Vec3f TangentFrame::map_normal(const Vec3f& normal) const {
   const Vec3d wanted = normal.cast<double>();
   const Vec3d v(row0.dot(wanted), n.cross(t).dot(wanted), t.cross(b).dot(wanted));
   return unit_or_zero(t.dot(row0) < 0.0 ? Vec3d(-v) : v);
+}
+
+Mat3f any_frame(const Vec3d& normal) {
+  const Vec3d n = normal.isZero() ? Vec3d(Vec3d::UnitZ()) : normal.normalized();
+  // The axis least along the normal, so that the cross product is well away from zero.
+  Eigen::Index axis = 0;
+  n.cwiseAbs().minCoeff(&axis);
+  const Vec3d tangent = Vec3d::Unit(axis).cross(n).normalized();
+  Mat3f frame;
+  frame.col(0) = tangent.cast<float>();
+  frame.col(1) = n.cross(tangent).cast<float>();
+  frame.col(2) = n.cast<float>();
+  return frame;
 }
 
 Vec3f position_at(const Mesh& mesh, const SurfacePoint& point) {
@@ -97,7 +98,7 @@ TangentFrame frame_at(const Mesh& mesh, const SurfacePoint& point, NormalSpace s
   const Vec3d bitangent = sign * n.cross(t);
   const double least = min_frame_size * min_frame_size * n.squaredNorm();
   if (!(bitangent.squaredNorm() > least * std::max(1.0, t.squaredNorm()))) {
-    frame.to_object = orthonormal_frame(n.normalized());
+    frame.to_object = any_frame(n);
     return frame;
   }
   frame.to_object.col(0) = t.cast<float>();

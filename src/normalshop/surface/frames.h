@@ -19,7 +19,7 @@ T interpolate(const T& corner0, const T& corner1, const T& corner2, float b1, fl
 
 /// The linear map from a map's vectors to object space at one surface point, as renderers build it:
 /// columns vT, vB = w cross(vN, vT), vN, interpolated and NOT normalised (MikkTSpace's contract).
-/// The identity for object-space maps.
+/// Mesh::node_frame() for object-space maps, the identity for world-space ones.
 struct TangentFrame {
   Mat3f to_object = Mat3f::Identity();
 
@@ -28,6 +28,10 @@ struct TangentFrame {
   /// Unit map-space normal of an object-space normal: the exact inverse of object_normal().
   Vec3f map_normal(const Vec3f& object_normal) const;
 };
+
+/// An orthonormal frame around a direction, its third column, which need not be unit; around z for
+/// the zero vector.
+Mat3f any_frame(const Vec3d& normal);
 
 Vec3f position_at(const Mesh& mesh, const SurfacePoint& point);
 /// Unit base normal N^b.

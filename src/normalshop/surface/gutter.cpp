@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "normalshop/core/parallel.h"
+#include "normalshop/core/slope.h"
+#include "normalshop/surface/frames.h"
+#include "normalshop/surface/seams.h"
 #include "normalshop/surface/surface_walk.h"
 
 namespace normalshop {
@@ -19,14 +23,21 @@ struct BorderEdge {
   Vec2d along{0.0, 0.0};
   double squared_length = 0.0;
   Vec2d outward{0.0, 0.0};  ///< unit
+  std::uint32_t part = 0;   ///< see Gutter::number_parts()
 
   double parameter(const Vec2d& p) const {
     return std::clamp((p - first).dot(along) / squared_length, 0.0, 1.0);
   }
   Vec2d end() const { return first + along; }
+  Vec2d nearest(const Vec2d& p) const { return first + parameter(p) * along; }
 };
 
-/// The nearest border edge of a texel so far.
+/// Feet on borders that lie on each other are no further apart than this, in texels.
+constexpr double same_place = 0.125;
+/// Cosine between the directions of such borders.
+constexpr double same_direction = 0.95;
+
+/// The nearest border edge of a texel so far, or a further one that lies on it.
 struct Candidate {
   std::uint32_t texel;
   std::uint32_t border;
@@ -35,19 +46,21 @@ struct Candidate {
   /// lies more squarely beyond.
   double beyond;
   Vec2d place;  ///< the texel's centre in the grid
+  bool further = false;
 };
 
 class Gutter {
  public:
-  Gutter(const Mesh& mesh, const Topology& topology, const std::vector<TexelAffine>& affines,
-         const Image<std::uint32_t>& owner, int reach)
-      : mesh_(mesh),
-        topology_(topology),
-        affines_(affines),
-        owner_(owner),
+  Gutter(const GutterGround& ground, int reach)
+      : mesh_(ground.mesh),
+        topology_(ground.topology),
+        affines_(ground.affines),
+        owner_(ground.owner),
+        overlaps_(ground.overlaps),
         reach_(reach),
-        period_{owner.width(), owner.height()} {
+        period_{owner_.width(), owner_.height()} {
     collect_borders();
+    if (overlaps_) number_parts();
   }
 
   std::vector<GutterTexel> grow() const {
@@ -111,6 +124,32 @@ class Gutter {
     if (b.squared_length > 0.0) borders_.push_back(b);
   }
 
+  /// Numbers the parts of charts that are not folded, in file order, and marks the borders.
+  void number_parts() {
+    constexpr std::uint32_t unknown = 0xFFFFFFFFU;
+    std::vector<std::uint32_t> part(affines_.size(), unknown);
+    std::vector<std::uint32_t> open;
+    std::uint32_t count = 0;
+    for (std::uint32_t first = 0; first < part.size(); ++first) {
+      if (part[first] != unknown) continue;
+      part[first] = count++;
+      open.push_back(first);
+      while (!open.empty()) {
+        const std::uint32_t triangle = open.back();
+        open.pop_back();
+        const double area = signed_area(triangle);
+        for (std::uint32_t edge = 3 * triangle; edge < 3 * triangle + 3; ++edge) {
+          if (is_border(edge, area)) continue;
+          const std::uint32_t next = topology_.neighbor[edge] / 3;
+          if (part[next] != unknown) continue;
+          part[next] = part[triangle];
+          open.push_back(next);
+        }
+      }
+    }
+    for (BorderEdge& b : borders_) b.part = part[b.edge / 3];
+  }
+
   GridRange rows_near(const BorderEdge& b) const {
     const double low = std::min(b.first.y(), b.end().y());
     const double high = std::max(b.first.y(), b.end().y());
@@ -138,6 +177,51 @@ class Gutter {
   std::vector<GutterTexel> grow_band(int band, std::span<const std::uint32_t> items,
                                      std::vector<std::uint32_t>& index) const {
     std::vector<Candidate> candidates;
+    offer_band(band, items, index,
+               [&](std::uint32_t item, std::uint32_t texel, const Vec2d& p, std::uint32_t& found) {
+                 offer(item, texel, p, found, candidates);
+               });
+    const std::size_t nearest_count = candidates.size();
+    if (overlaps_) {
+      offer_band(
+          band, items, index,
+          [&](std::uint32_t item, std::uint32_t texel, const Vec2d& p, std::uint32_t& nearest) {
+            offer_further(item, texel, p, nearest, candidates);
+          });
+    }
+    const std::size_t origin =
+        static_cast<std::size_t>(band) * band_rows * static_cast<std::size_t>(period_.width);
+    for (std::size_t i = 0; i < nearest_count; ++i) {
+      index[candidates[i].texel - origin] = no_candidate;
+    }
+    sort(candidates);
+    std::vector<GutterTexel> result(candidates.size());
+    std::transform(candidates.begin(), candidates.end(), result.begin(),
+                   [&](const Candidate& c) { return resolve(c); });
+    return result;
+  }
+
+  /// By texel, the nearest first; of the further borders of one part, which meet at a corner or
+  /// continue each other, one.
+  void sort(std::vector<Candidate>& candidates) const {
+    const auto part = [&](const Candidate& c) { return borders_[c.border].part; };
+    const auto key = [&](const Candidate& c) {
+      return std::tuple(c.texel, c.further, c.further ? part(c) : 0, c.squared_distance, c.border);
+    };
+    std::sort(candidates.begin(), candidates.end(),
+              [&](const Candidate& a, const Candidate& b) { return key(a) < key(b); });
+    const auto last = std::unique(
+        candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+          return a.texel == b.texel && a.further && b.further && part(a) == part(b);
+        });
+    candidates.erase(last, candidates.end());
+  }
+
+  /// offer(border, texel, its place in the grid, its entry of `index`) for what each border of the
+  /// band may reach.
+  template <class Offer>
+  void offer_band(int band, std::span<const std::uint32_t> items, std::vector<std::uint32_t>& index,
+                  const Offer& offer) const {
     const int first = band * band_rows;
     const int last = std::min(first + band_rows, period_.height);
     for (const std::uint32_t item : items) {
@@ -147,24 +231,15 @@ class Gutter {
             index.data() + static_cast<std::ptrdiff_t>(y - first) * period_.width;
         for (std::int64_t row = first_at_or_after(rows.begin, y, period_.height); row < rows.end;
              row += period_.height) {
-          offer_row(item, y, row, index_row, candidates);
+          offer_row(item, y, row, index_row, offer);
         }
       }
     }
-    for (const Candidate& c : candidates) {
-      index[c.texel - static_cast<std::size_t>(first) * static_cast<std::size_t>(period_.width)] =
-          no_candidate;
-    }
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Candidate& a, const Candidate& b) { return a.texel < b.texel; });
-    std::vector<GutterTexel> result(candidates.size());
-    std::transform(candidates.begin(), candidates.end(), result.begin(),
-                   [&](const Candidate& c) { return resolve(c); });
-    return result;
   }
 
+  template <class Offer>
   void offer_row(std::uint32_t item, int y, std::int64_t row, std::uint32_t* index_row,
-                 std::vector<Candidate>& candidates) const {
+                 const Offer& offer) const {
     const BorderEdge& b = borders_[item];
     const std::uint32_t* owner_row = owner_.row(y);
     const double py = static_cast<double>(row) + 0.5;
@@ -173,7 +248,7 @@ class Gutter {
     for (std::int64_t column = columns.begin; column < columns.end; ++column) {
       if (owner_row[x] == no_triangle) {
         const auto texel = static_cast<std::uint32_t>(x + std::int64_t{y} * period_.width);
-        offer(item, texel, {static_cast<double>(column) + 0.5, py}, index_row[x], candidates);
+        offer(item, texel, Vec2d(static_cast<double>(column) + 0.5, py), index_row[x]);
       }
       if (++x == period_.width) x = 0;
     }
@@ -187,7 +262,7 @@ class Gutter {
     const Vec2d nearest = t < 1.0 ? Vec2d(b.first + t * b.along) : texels(next_corner(b.edge));
     const double d = (p - nearest).squaredNorm();
     if (d > static_cast<double>(reach_) * reach_) return;
-    const Candidate offered{texel, item, d, b.outward.dot(p - b.first), p};
+    const Candidate offered{texel, item, d, b.outward.dot(p - b.first), p, false};
     if (index == no_candidate) {
       index = static_cast<std::uint32_t>(candidates.size());
       candidates.push_back(offered);
@@ -197,6 +272,20 @@ class Gutter {
     if (d < best.squared_distance || (d == best.squared_distance && offered.beyond > best.beyond)) {
       best = offered;
     }
+  }
+
+  /// Adds a border of another part that lies on the nearest one.
+  void offer_further(std::uint32_t item, std::uint32_t texel, const Vec2d& p, std::uint32_t nearest,
+                     std::vector<Candidate>& candidates) const {
+    if (nearest == no_candidate) return;
+    const Candidate& best = candidates[nearest];
+    const BorderEdge& there = borders_[best.border];
+    const BorderEdge& b = borders_[item];
+    if (b.part == there.part || b.outward.dot(there.outward) < same_direction) return;
+    const Vec2d out = p - b.nearest(p);
+    const Vec2d best_out = best.place - there.nearest(best.place);
+    if ((out - best_out).norm() > same_place) return;
+    candidates.push_back({texel, item, out.squaredNorm(), b.outward.dot(p - b.first), p, true});
   }
 
   /// Weights of a triangle's corners at a place in the grid, in double.
@@ -229,11 +318,23 @@ class Gutter {
     g.owner = triangle;
     g.owner_b1 = static_cast<float>(foot[1] + share * (w[1] - foot[1]));
     g.owner_b2 = static_cast<float>(foot[2] + share * (w[2] - foot[2]));
+    g.border_b1 = static_cast<float>(foot[1]);
+    g.border_b2 = static_cast<float>(foot[2]);
+    g.hard_edge = is_hard(b.edge, t);
     g.source = walk(mesh_, topology_, way_out(b, w, t));
     if (!std::isfinite(g.source.b1 + g.source.b2)) {  // positions that are no numbers
-      g.source = {triangle, static_cast<float>(foot[1]), static_cast<float>(foot[2])};
+      g.source = {triangle, g.border_b1, g.border_b2};
     }
     return g;
+  }
+
+  /// Do both sides' base normals differ at this place of an edge?
+  bool is_hard(std::uint32_t edge, double t) const {
+    const std::uint32_t across = topology_.neighbor[edge];
+    if (across == no_edge) return false;
+    const Vec3f here = base_normal_at(mesh_, point_on_edge(edge, t));
+    const Vec3f there = base_normal_at(mesh_, point_on_edge(across, 1.0 - t));
+    return angle_degrees(here, there) >= static_cast<double>(hard_edge_degrees);
   }
 
   /// From the nearest point of the border to where the triangle's plane puts the texel.
@@ -254,6 +355,7 @@ class Gutter {
   const Topology& topology_;
   const std::vector<TexelAffine>& affines_;
   const Image<std::uint32_t>& owner_;
+  bool overlaps_;
   int reach_;
   Period period_;
   std::vector<BorderEdge> borders_;
@@ -261,10 +363,8 @@ class Gutter {
 
 }  // namespace
 
-std::vector<GutterTexel> grow_gutter(const Mesh& mesh, const Topology& topology,
-                                     const std::vector<TexelAffine>& affines,
-                                     const Image<std::uint32_t>& owner, int reach) {
-  return Gutter(mesh, topology, affines, owner, reach).grow();
+std::vector<GutterTexel> grow_gutter(const GutterGround& ground, int reach) {
+  return Gutter(ground, reach).grow();
 }
 
 }  // namespace normalshop

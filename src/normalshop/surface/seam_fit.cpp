@@ -9,6 +9,7 @@
 #include "normalshop/core/sample.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/surface/frames.h"
+#include "normalshop/surface/texel_map.h"
 
 namespace normalshop {
 
@@ -23,9 +24,8 @@ constexpr double largest_step = 0.4;
 constexpr int between_count = 3;
 constexpr float between_weight = 0.3F;
 /// Degrees between both sides' base normals: up to the first they show one surface, from the second
-/// on an edge of it.
+/// on (hard_edge_degrees) an edge of it.
 constexpr float same_surface = 5.0F;
-constexpr float hard_edge = 15.0F;
 constexpr std::size_t grain = 512;
 
 using Plane = Eigen::Matrix<double, 3, 2>;
@@ -100,9 +100,7 @@ class SeamFit::Solver {
 SeamFit::Solver::Solver(const SeamFit& fit, std::span<NormalMap* const> maps) : fit_(fit) {
   for (const Texel& t : fit.texels_) {
     const NormalMap& map = *maps[t.set];
-    const auto width = static_cast<std::uint32_t>(map.width());
-    const int x = static_cast<int>(t.texel % width);
-    const int y = static_cast<int>(t.texel / width);
+    const auto [x, y] = texel_place(t.texel, map.width());
     const Vec3f now = map.vector(x, y);
     const bool moves = map.edited(x, y) && now != t.before;
     free_of_.push_back(moves ? static_cast<std::uint32_t>(texel_of_.size()) : fixed);
@@ -277,9 +275,8 @@ std::size_t SeamFit::Solver::run(std::span<NormalMap* const> maps) {
   for (const std::uint32_t index : texel_of_) {
     const Texel& t = fit_.texels_[index];
     NormalMap& map = *maps[t.set];
-    const auto width = static_cast<std::uint32_t>(map.width());
-    map.set_normal(static_cast<int>(t.texel % width), static_cast<int>(t.texel / width),
-                   normals_[index].cast<float>().normalized());
+    const auto [x, y] = texel_place(t.texel, map.width());
+    map.set_normal(x, y, normals_[index].cast<float>().normalized());
   }
   return texel_of_.size();
 }
@@ -329,11 +326,11 @@ void SeamFit::add_sample(const Mesh& mesh, const SeamSample& place, float weight
                          std::vector<std::uint64_t>& keys) {
   const auto bend = static_cast<float>(
       angle_degrees(base_normal_at(mesh, place.a), base_normal_at(mesh, place.b)));
-  if (!(bend < hard_edge)) return;
+  if (!(bend < hard_edge_degrees)) return;
   Sample s;
   s.sides[0] = side(mesh, place.a, maps, keys);
   s.sides[1] = side(mesh, place.b, maps, keys);
-  s.weight = weight * (1.0F - smoothstep(same_surface, hard_edge, bend));
+  s.weight = weight * (1.0F - smoothstep(same_surface, hard_edge_degrees, bend));
   samples_.push_back(s);
 }
 
@@ -352,10 +349,8 @@ void SeamFit::collect_texels(const std::vector<std::uint64_t>& keys, NormalMaps 
   for (const std::uint64_t key : unique) {
     const auto set = static_cast<std::uint32_t>(key >> 32U);
     const auto texel = static_cast<std::uint32_t>(key);
-    const auto width = static_cast<std::uint32_t>(maps[set]->width());
-    texels_.push_back(
-        {set, texel,
-         maps[set]->vector(static_cast<int>(texel % width), static_cast<int>(texel / width))});
+    const auto [x, y] = texel_place(texel, maps[set]->width());
+    texels_.push_back({set, texel, maps[set]->vector(x, y)});
   }
 }
 

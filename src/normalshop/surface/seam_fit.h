@@ -29,7 +29,8 @@ class SeamFit {
   /// Before the edit: remembers what is read along the edges. Every texture set needs its map.
   SeamFit(const Mesh& mesh, std::span<const SeamEdge> edges, NormalMaps maps);
 
-  /// After it. Returns the texels that were moved. The result does not depend on threads.
+  /// After it. Returns how many texels that are read along the seams the edit changed: those that
+  /// may have moved. The result does not depend on threads.
   std::size_t apply(std::span<NormalMap* const> maps) const;
 
  private:

@@ -63,7 +63,8 @@ std::vector<SeamSample> sample_seams(const Mesh& mesh, std::span<const SeamEdge>
     const SeamEdge& e = edges[i];
     const float texels =
         std::max(texels_between(mesh, e.a0, e.a1, maps), texels_between(mesh, e.b0, e.b1, maps));
-    const int count = std::clamp(static_cast<int>(std::ceil(texels)), 1, 1 << 20);
+    // UVs may be no numbers.
+    const int count = texels > 1.0F ? static_cast<int>(std::ceil(std::min(texels, 0x1p20F))) : 1;
     for (int k = 0; k < count; ++k) {
       const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(count);
       samples.push_back({static_cast<std::uint32_t>(i), between(e.triangle_a, e.a0, e.a1, t),

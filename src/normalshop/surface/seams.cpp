@@ -37,8 +37,7 @@ void number_charts(const Topology& topology, Seams& seams) {
 }
 
 SeamEdge seam_edge(std::uint32_t a, std::uint32_t b) {
-  return {a / 3, b / 3,          static_cast<int>(a % 3), static_cast<int>(b % 3),
-          a,     next_corner(a), next_corner(b),          b};
+  return {a / 3, b / 3, a, next_corner(a), next_corner(b), b};
 }
 
 }  // namespace

@@ -13,13 +13,15 @@ namespace normalshop {
 struct SeamEdge {
   std::uint32_t triangle_a;
   std::uint32_t triangle_b;
-  int edge_a;  ///< 0 to 2, from corner k to corner (k + 1) % 3
-  int edge_b;
   std::uint32_t a0;  ///< corner indices, 3 * triangle + k
   std::uint32_t a1;
   std::uint32_t b0;
   std::uint32_t b1;
 };
+
+/// A seam at which both sides' base normals differ by this many degrees or more is a hard edge:
+/// each side shows a surface of its own.
+inline constexpr float hard_edge_degrees = 15.0F;
 
 inline constexpr std::uint32_t no_chart = 0xFFFFFFFFU;
 

@@ -23,13 +23,6 @@ SurfacePoint point_from_corner_weights(std::uint32_t triangle, const std::array<
   return {triangle, static_cast<float>(w[1] / sum), static_cast<float>(w[2] / sum)};
 }
 
-SurfacePoint point_on_edge(std::uint32_t edge, double t) {
-  std::array<double, 3> w{};
-  w[edge % 3] = 1.0 - t;
-  w[next_corner(edge) % 3] = t;
-  return point_from_corner_weights(edge / 3, w);
-}
-
 /// Where the way from `start` to `target` crosses the line of an edge, 0 to 1 along the edge.
 double crossing(const UnfoldedEdge& e, const Vec2d& start, const Vec2d& target) {
   const double from = cross(e.second - e.first, start - e.first);
@@ -68,6 +61,13 @@ SurfacePoint point_inside(std::uint32_t edge, const UnfoldedEdge& e, const Vec2d
 }
 
 }  // namespace
+
+SurfacePoint point_on_edge(std::uint32_t edge, double t) {
+  std::array<double, 3> w{};
+  w[edge % 3] = 1.0 - t;
+  w[next_corner(edge) % 3] = t;
+  return point_from_corner_weights(edge / 3, w);
+}
 
 SurfacePoint walk(const Mesh& mesh, const Topology& topology, const SurfaceWalk& way) {
   const Vec3d leave =

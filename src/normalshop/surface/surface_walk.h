@@ -14,6 +14,9 @@ struct SurfaceWalk {
   Vec2d target{0.0, 0.0};
 };
 
+/// The point at t of an edge, 0 to 1 along it.
+SurfacePoint point_on_edge(std::uint32_t edge, double t);
+
 /// The end of the way: triangles across edges are unfolded into one plane, over seams too. Stops on
 /// an edge where nothing lies across, or only a triangle of another texture set, and after 256
 /// triangles.

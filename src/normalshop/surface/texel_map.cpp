@@ -170,7 +170,8 @@ TexelMap::TexelMap(const Mesh& mesh, const Topology& topology, std::uint32_t tex
   check(mesh, width, height, gutter);
   owner_.resize(width, height);
   find_owners(mesh);
-  if (gutter > 0) gutter_ = grow_gutter(mesh, topology, affines_, owner_, gutter);
+  if (gutter == 0) return;
+  gutter_ = grow_gutter({mesh, topology, affines_, owner_, !shared_.empty()}, gutter);
 }
 
 void TexelMap::find_owners(const Mesh& mesh) {
@@ -200,26 +201,51 @@ void TexelMap::find_owners(const Mesh& mesh) {
   for (const auto& part : shared) shared_.insert(shared_.end(), part.begin(), part.end());
 }
 
+namespace {
+
+/// The middle of what a triangle holds of a row of the grid.
+float middle_of_row(const TexelAffine& a, float y) {
+  const Vec2f origin = a.at(0.0F, y);
+  const Vec3f weights(1.0F - origin.x() - origin.y(), origin.x(), origin.y());
+  const Vec3f steps(-a.db_dx.x() - a.db_dx.y(), a.db_dx.x(), a.db_dx.y());
+  float low = -3e38F;
+  float high = 3e38F;
+  for (int k = 0; k < 3; ++k) {
+    if (steps[k] > 0.0F) low = std::max(low, -weights[k] / steps[k]);
+    if (steps[k] < 0.0F) high = std::min(high, -weights[k] / steps[k]);
+  }
+  return 0.5F * low + 0.5F * high;
+}
+
+/// Lower and upper end of a triangle's rows, from the inverse of its affine map.
+Vec2f rows_of(const TexelAffine& a) {
+  const float inverse = 1.0F / (a.db_dx.x() * a.db_dy.y() - a.db_dy.x() * a.db_dx.y());
+  const float y0 =
+      a.y0 + inverse * (a.origin_weights.x() * a.db_dx.y() - a.origin_weights.y() * a.db_dx.x());
+  const float y1 = y0 - inverse * a.db_dx.y();
+  const float y2 = y0 + inverse * a.db_dx.x();
+  return {std::min({y0, y1, y2}), std::max({y0, y1, y2})};
+}
+
+}  // namespace
+
 SurfacePoint TexelMap::surface_point(std::uint32_t triangle, int x, int y) const {
   const TexelAffine& a = affines_[triangle];
   const Vec2f here = a.at(static_cast<float>(x), static_cast<float>(y));
   if (!a.wraps) return {triangle, here.x(), here.y()};
-  // The triangle's extent, from the inverse of the affine map.
-  const float inverse = 1.0F / (a.db_dx.x() * a.db_dy.y() - a.db_dy.x() * a.db_dx.y());
-  const Vec2f corner0 =
-      Vec2f(a.x0, a.y0) +
-      inverse * Vec2f(a.origin_weights.y() * a.db_dy.x() - a.origin_weights.x() * a.db_dy.y(),
-                      a.origin_weights.x() * a.db_dx.y() - a.origin_weights.y() * a.db_dx.x());
-  const Vec2f corner1 = corner0 + inverse * Vec2f(a.db_dy.y(), -a.db_dx.y());
-  const Vec2f corner2 = corner0 + inverse * Vec2f(-a.db_dy.x(), a.db_dx.x());
-  const Vec2f high = corner0.cwiseMax(corner1).cwiseMax(corner2);
   SurfacePoint best{triangle, here.x(), here.y()};
-  float most_inside = -1e30F;
-  for (int sy = y; static_cast<float>(sy) < high.y() + 1.0F || sy == y; sy += height()) {
-    for (int sx = x; static_cast<float>(sx) < high.x() + 1.0F || sx == x; sx += width()) {
-      const Vec2f b = a.at(static_cast<float>(sx), static_cast<float>(sy));
+  float most_inside = std::min({here.x(), here.y(), 1.0F - here.x() - here.y()});
+  const Vec2f rows = rows_of(a);
+  const auto columns = static_cast<float>(width());
+  // In each row the two repetitions around the middle are the most inside.
+  for (int row = y; static_cast<float>(row) < rows.y() + 1.0F; row += height()) {
+    const auto sy = static_cast<float>(row);
+    if (sy < rows.x() - 1.0F) continue;
+    const float maps = std::floor((middle_of_row(a, sy) - static_cast<float>(x)) / columns);
+    for (const float shift : {maps, maps + 1.0F}) {
+      const Vec2f b = a.at(static_cast<float>(x) + shift * columns, sy);
       const float inside = std::min({b.x(), b.y(), 1.0F - b.x() - b.y()});
-      if (inside <= most_inside) continue;
+      if (!(inside > most_inside)) continue;
       most_inside = inside;
       best = {triangle, b.x(), b.y()};
     }

@@ -13,6 +13,16 @@ struct Topology;
 
 inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
+/// Column and row of a texel whose index is y * width + x. Maps hold up to 2^32 texels.
+struct TexelPlace {
+  int x;
+  int y;
+};
+constexpr TexelPlace texel_place(std::uint32_t index, int width) {
+  const auto columns = static_cast<std::uint32_t>(width);
+  return {static_cast<int>(index % columns), static_cast<int>(index / columns)};
+}
+
 /// Affine map from a texel to barycentric weights of one triangle's corners 1 and 2:
 /// b = origin_weights + (x - x0) * db_dx + (y - y0) * db_dy, (x, y) the texel's integer
 /// coordinates. (x0, y0) lies near corner 0, so that differences stay exact in float.
@@ -47,15 +57,22 @@ struct GutterTexel {
   SurfacePoint source;  ///< the surface point that the texel stands for: across the seam, at the
                         ///< same distance from it on the surface; on the border itself where
                         ///< nothing of the texture set lies across
+  float border_b1;      ///< weights of the owner's corners 1 and 2 at the nearest point of its
+  float border_b2;      ///< border
+  bool hard_edge;       ///< both sides' base normals differ there (hard_edge_degrees): what lies
+                        ///< across is another surface, and the chart ends at its border
 };
 
 /// Which triangle each texel of one texture set's map shows: a texel belongs to a triangle that
 /// holds its centre. Of several, the first in file order owns it and the others share it. Texels
 /// outside every triangle within `gutter` texels of a chart's border (seam, open edge, or an edge
 /// at which the chart is folded back) are the gutter; the nearest border's triangle owns them.
+/// Where borders of overlapping charts lie on each other, the others' triangles share them.
 ///
 /// A centre on an edge belongs to the triangle right of or below it, so that neighbours of one
-/// chart never share a texel. UVs outside 0..1 repeat. The result does not depend on threads.
+/// chart never share a texel. UVs outside 0..1 repeat; where a triangle is larger than the map, a
+/// texel stands for one of its repetitions on it, near the middle. The result does not depend on
+/// threads.
 class TexelMap {
  public:
   TexelMap() = default;
@@ -68,17 +85,17 @@ class TexelMap {
 
   int width() const { return owner_.width(); }
   int height() const { return owner_.height(); }
-  std::uint32_t texture_set() const { return texture_set_; }
   /// Triangle or no_triangle, per texel.
   const Image<std::uint32_t>& owner() const { return owner_; }
   /// By texel, then triangle.
   const std::vector<SharedTexel>& shared() const { return shared_; }
-  /// By texel.
+  /// By texel; of several entries of one texel the first is its owner's, the others share it.
   const std::vector<GutterTexel>& gutter() const { return gutter_; }
 
   /// One per triangle of the mesh; degenerate for triangles of other texture sets.
   const std::vector<TexelAffine>& affines() const { return affines_; }
-  /// Weights at a texel's centre in a triangle that covers it, whole-map shifts considered.
+  /// Weights at a texel's centre in a triangle that covers it, whole-map shifts considered: of
+  /// several repetitions one.
   SurfacePoint surface_point(std::uint32_t triangle, int x, int y) const;
 
  private:

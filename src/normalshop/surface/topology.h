@@ -36,7 +36,8 @@ struct Topology {
                                         ///< opposite direction, or no_edge
   std::vector<EdgeKind> kind;           ///< per edge
   /// Edges that more than two triangles share, or two in the same direction; ascending. Such edges
-  /// are paired, as far as they can be, in file order, those with equal UVs first.
+  /// are paired, as far as they can be, in file order, those with equal UVs first (where no more
+  /// than 32 lie on each other).
   std::vector<std::uint32_t> irregular_edges;
 };
 

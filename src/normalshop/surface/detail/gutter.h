@@ -8,10 +8,17 @@
 
 namespace normalshop {
 
-/// The gutter of a texel map whose owners are known, by texel; see GutterTexel. Internal to the
-/// texel map.
-std::vector<GutterTexel> grow_gutter(const Mesh& mesh, const Topology& topology,
-                                     const std::vector<TexelAffine>& affines,
-                                     const Image<std::uint32_t>& owner, int reach);
+/// What the gutter grows from.
+struct GutterGround {
+  const Mesh& mesh;
+  const Topology& topology;
+  const std::vector<TexelAffine>& affines;
+  const Image<std::uint32_t>& owner;
+  bool overlaps;  ///< charts lie on each other: borders may too
+};
+
+/// The gutter of a texel map whose owners are known, by texel; see TexelMap::gutter(). Internal to
+/// the texel map.
+std::vector<GutterTexel> grow_gutter(const GutterGround& ground, int reach);
 
 }  // namespace normalshop
