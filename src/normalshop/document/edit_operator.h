@@ -32,6 +32,7 @@ Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, bo
 struct OperatorInput {
   SlopeView source;   ///< before the edit (with details ignored: the base surface); extended past
                       ///< borders; empty unless the operator reads()
+  SlopeView base;     ///< the base surface's numbers, likewise; empty unless reads_base()
   MaskView validity;  ///< the weight of the effective chart: how far source counts; empty likewise
   Rect region;        ///< where the result is wanted; the rest stays as it is
   Rect view;          ///< the view's whole extent in pixels of this chart
@@ -66,6 +67,8 @@ class EditOperator {
   virtual StrokeUse stroke_use() const { return StrokeUse::Path; }
   /// Does it read the details under it?
   virtual bool reads() const = 0;
+  /// Does it tell the base surface from the details on it? Only for operators that read.
+  virtual bool reads_base() const { return false; }
   /// Loads what the options name.
   virtual void load(Assets&) {}
   /// Where it may change something, to within two pixels; empty: the whole view.
