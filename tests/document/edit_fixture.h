@@ -35,6 +35,23 @@ inline Document flat_plane(int size) {
 
 inline const NormalMap& map_of(const Document& d) { return d.storage().sets.at(0).normals; }
 
+/// The hemisphere with a map of its own normals in object space.
+inline Document hemisphere_document(int size) {
+  RawImage codes(size, size, 3, CodeType::F32);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const Vec2f p((static_cast<float>(x) + 0.5F) / static_cast<float>(size) - 0.5F,
+                    0.5F - (static_cast<float>(y) + 0.5F) / static_cast<float>(size));
+      const float angle = std::min(p.norm() / 0.4F, 1.0F) * 1.5707963F;
+      const Vec2f around = p.norm() > 0.0F ? Vec2f(p.normalized()) : Vec2f(0.0F, 0.0F);
+      const Vec3f n(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle));
+      std::copy_n(n.data(), 3, codes.row<float>(y) + static_cast<std::ptrdiff_t>(3 * x));
+    }
+  }
+  return document(hemisphere(96, 192), NormalMap(std::move(codes), {.space = NormalSpace::Object,
+                                                                    .signed_float = true}));
+}
+
 /// Tangent-space normals with random slopes up to about 0.3.
 inline NormalMap noise_map(int size, CodeType type) {
   const bool bytes = type == CodeType::U8;

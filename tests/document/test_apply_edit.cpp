@@ -9,23 +9,6 @@ const std::string pen_line =
     R"("operator": "pen", "options": {"profile": "bump", "width": 0.2, "height": 0.01},
        "strokes": [[[-1.2, 0], [1.2, 0]]])";
 
-/// The hemisphere with a map of its own normals in object space.
-Document hemisphere_document(int size) {
-  RawImage codes(size, size, 3, CodeType::F32);
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const Vec2f p((static_cast<float>(x) + 0.5F) / static_cast<float>(size) - 0.5F,
-                    0.5F - (static_cast<float>(y) + 0.5F) / static_cast<float>(size));
-      const float angle = std::min(p.norm() / 0.4F, 1.0F) * 1.5707963F;
-      const Vec2f around = p.norm() > 0.0F ? Vec2f(p.normalized()) : Vec2f(0.0F, 0.0F);
-      const Vec3f n(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle));
-      std::copy_n(n.data(), 3, codes.row<float>(y) + static_cast<std::ptrdiff_t>(3 * x));
-    }
-  }
-  return document(hemisphere(96, 192), NormalMap(std::move(codes), {.space = NormalSpace::Object,
-                                                                    .signed_float = true}));
-}
-
 struct Error {
   double mean = 0.0;
   float most = 0.0F;
@@ -130,6 +113,12 @@ TEST(ApplyEdit, EditsThatChangeNothingLeaveEveryCode) {
           R"("operator": "pen", "options": {"width": 0.2, "height": 0}, "strokes": [[[0, 0]]])",
           R"("operator": "pen", "options": {"width": 0, "height": 1}, "strokes": [[[0, 0]]])",
           R"("operator": "combine", "options": {"image": "cone.png", "relief": 0})",
+          R"("operator": "combine", "options": {"image": "cone.png", "relief": 0,
+             "model": "rotation"}, "mode": "base")",
+          R"("operator": "combine", "options": {"image": "cone.png", "relief": 0,
+             "model": "reoriented"})",
+          R"("operator": "combine", "options": {"image": "cone.png", "model": "overlay"},
+             "strength": 0)",
           R"("operator": "combine", "options": {"image": "cone.png", "size": 0.01}, "strength": 0,
              "details": "ignore")",
           R"("operator": "pen", "options": {"width": 1, "height": 1}, "strokes": [[[0, 0]]],
@@ -219,83 +208,6 @@ TEST(ApplyEdit, CopiesLandOnTheirPoints) {
     d.apply(edit(std::string(what) + R"(, "view": "front", "strokes": [[[0.2, -0.1]]])"));
     EXPECT_GT(map_of(d).edited_count(), 300U);
     EXPECT_LT((centre_of_edits(map_of(d)) - Vec2f(0.2F, -0.1F)).norm(), 0.006F) << what;
-  }
-}
-
-/// Slope of "wave.png" so wide at x from the view's centre.
-float wave_slope(float width, float x) { return 0.5F * std::cos(6.2831853F * x / width); }
-
-TEST(ApplyEdit, AnImageRepeatsOverTheWholeView) {
-  Document d = flat_plane(256);
-  d.apply(edit(R"("operator": "combine", "view": "front", "options": {"image": "wave.png",
-                  "size": 0.23, "repeat": true, "relief": -2})"));
-  float most = 0.0F;
-  for (int y = 0; y < 256; ++y) {
-    for (int x = 0; x < 256; ++x) {
-      const float slope = -2.0F * wave_slope(0.23F, plane_point(map_of(d), x, y).x());
-      most = std::max(most, degrees_between(map_of(d).normal(x, y), {-slope, 0.0F, 1.0F}));
-    }
-  }
-  EXPECT_LT(most, 0.5F);
-}
-
-TEST(ApplyEdit, AnImageLiesOnceInTheMiddleOfTheView) {
-  Document d = flat_plane(256);
-  d.apply(edit(R"("operator": "combine", "options": {"image": "wave.png", "rotation": 90,
-                  "border": 0.1}, "view": {"direction": [0, 0, 1], "center": [0.6, 0.5, 0],
-                  "width": 0.4})"));
-  for (int y = 0; y < 256; ++y) {
-    for (int x = 0; x < 256; ++x) {
-      const Vec2f p = plane_point(map_of(d), x, y) - Vec2f(0.1F, 0.0F);
-      // It is 0.4 wide and 0.2 high before it is turned; its border is a tenth of 0.2.
-      if (std::abs(p.x()) > 0.11F || std::abs(p.y()) > 0.21F) {
-        ASSERT_FALSE(map_of(d).edited(x, y)) << x << ", " << y;
-      } else if (std::abs(p.x()) < 0.078F && std::abs(p.y()) < 0.178F) {
-        const Vec3f expected(0.0F, -wave_slope(0.4F, p.y()), 1.0F);
-        ASSERT_LT(degrees_between(map_of(d).normal(x, y), expected), 0.3F) << x << ", " << y;
-      }
-    }
-  }
-}
-
-TEST(ApplyEdit, AnImageIsPaintedAlongStrokesAndFillsThem) {
-  const std::string options =
-      R"("operator": "combine", "view": "front", "options": {"image": "wave.png", "size": 0.2,
-         "repeat": true, )";
-  Document brushed = flat_plane(256);
-  brushed.apply(edit(options + R"("area": "brush", "brush": 0.2},
-                                  "strokes": [[[-0.4, 0.25], [0.4, 0.25]]])"));
-  Document filled = flat_plane(256);
-  filled.apply(edit(options + R"("area": "inside", "feather": 0.02},
-                                 "strokes": [[[-0.4, 0.15], [0.4, 0.15], [0.4, 0.35], [-0.4, 0.35]]])"));
-  for (const Document* d : {&brushed, &filled}) {
-    const NormalMap& map = map_of(*d);
-    for (int x = 40; x < 216; ++x) {
-      const float slope = wave_slope(0.2F, plane_point(map, x, 64).x());
-      ASSERT_LT(degrees_between(map.normal(x, 64), {-slope, 0.0F, 1.0F}), 0.3F) << x;
-      ASSERT_FALSE(map.edited(x, 93));
-      ASSERT_FALSE(map.edited(x, 34));
-    }
-  }
-}
-
-TEST(ApplyEdit, AnImageReplacesDetailsByItsOpacity) {
-  Document d = document(plane_grid(2), noise_map(256, CodeType::U16));
-  d.apply(edit(R"("operator": "combine", "view": "front", "details": "ignore",
-                  "options": {"image": "cone.png", "size": 0.8, "border": 0})"));
-  const NormalMap& map = map_of(d);
-  for (int y = 0; y < 256; ++y) {
-    for (int x = 0; x < 256; ++x) {
-      // The cone ends at 12, its opacity at 14 of 32 pixels that are 0.8 wide together.
-      const Vec2f p = plane_point(map, x, y);
-      const float r = p.norm() / 0.025F;
-      if (r > 15.5F) {
-        ASSERT_FALSE(map.edited(x, y)) << x << ", " << y;
-      } else if (r > 2.5F && r < 10.5F) {
-        const Vec2f n = 0.5F * p.normalized();
-        ASSERT_LT(degrees_between(map.normal(x, y), {n.x(), n.y(), 1.0F}), 1.5F) << x << ", " << y;
-      }
-    }
   }
 }
 

@@ -129,6 +129,19 @@ TEST(AreaOperators, ProjectLeavesASurfaceAsItIs) {
   }
 }
 
+/// Every model of `combine`, on a picture: flat below, all of them show the image alone.
+TEST(AreaOperators, CombineByEveryModel) {
+  for (const std::string model : {"linear", "rotation", "reoriented", "whiteout", "udn"}) {
+    ImageDocument document = picture(constant({0.0F, 0.0F}));
+    document.apply(edit(R"("operator": "combine", "view": "front",
+        "options": {"image": "wave.png", "size": 64, "model": ")" +
+                        model + "\"}"));
+    const PictureSlopes after = slopes_of(document);
+    EXPECT_NEAR(after.slopes(24, 20).x(), 0.5F, 0.02F) << model;
+    EXPECT_NEAR(after.slopes(24, 20).y(), 0.0F, 1e-4F) << model;
+  }
+}
+
 /// The same edits in the chart of a mesh.
 TEST(AreaOperators, WorkOnAMesh) {
   for (const std::string name : {"flatten", "paint", "rotate", "balance", "project"}) {

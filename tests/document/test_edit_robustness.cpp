@@ -147,6 +147,10 @@ INSTANTIATE_TEST_SUITE_P(
         R"("operator": "combine", "view": "front", "mode": "base", "details": "ignore",
            "options": {"image": "cone.png", "size": 1e-30, "repeat": true, "scale_x": 100,
            "scale_y": 1e-5, "shear": 10, "relief": -100})",
+        R"("operator": "combine", "view": "front", "details": "ignore", "options": {
+           "image": "cone.png", "size": 1e-3, "repeat": true, "relief": 100, "model": "rotation"})",
+        R"("operator": "combine", "view": "front", "options": {"image": "cone.png", "relief": -100,
+           "scale_x": 1e-3, "model": "overlay"})",
         R"("operator": "combine", "view": {"direction": [0, 0, 1], "width": 1e9},
            "options": {"image": "cone.png", "repeat": true})",
         R"("operator": "combine", "view": {"facing": [0.5, 0.5, 0], "width": 1e-9},

@@ -30,7 +30,7 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
   {"operator": "combine", "view": "right",
    "options": {"image": "cone.png", "size": 0.4, "repeat": true, "relief": 3, "rotation": 30,
                "scale_x": -2, "scale_y": 0.5, "shear": -1, "heights": "grow", "border": 0.2,
-               "area": "inside", "brush": 0.1, "hardness": 0.3, "feather": 0.2},
+               "model": "whiteout", "area": "inside", "brush": 0.1, "hardness": 0.3, "feather": 0.2},
    "strokes": [[[0, 0], [1, 1], [0, 1]]]},
   {"operator": "smooth", "view": {"direction": [1, 0, 0]},
    "options": {"sigma": 0.05, "area": "brush", "brush": 0.4, "hardness": 0.25},

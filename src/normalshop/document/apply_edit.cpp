@@ -54,13 +54,16 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place
 /// The two numbers that the operator sees, and where they are real.
 struct Source {
   SlopeImage slopes;
+  SlopeImage base;  ///< may be empty
   MaskImage validity;
 };
 
 Source make_source(const Edit& edit, const EditingChart& chart) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
-  Source source{SlopeImage(width, height), MaskImage(width, height)};
+  const bool with_base = edit.operation->reads_base();
+  Source source{SlopeImage(width, height), {}, MaskImage(width, height)};
+  if (with_base) source.base.resize(width, height);
   const bool ignore = edit.details == DetailsRule::Ignore;
   parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
@@ -69,13 +72,15 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
         // Steep slopes beside rims and steps would else outweigh the surface around them.
         source.validity(x, y) = chart.weight(x, y);
         const bool valid = chart.weight(x, y) > 0.0F;
-        source.slopes(x, y) = !valid   ? Vec2f(0.0F, 0.0F)
-                              : ignore ? base_gradient(base, edit.mode)
-                                       : gradient_from_normal(chart.normal(x, y), base, edit.mode);
+        const Vec2f below = valid ? base_gradient(base, edit.mode) : Vec2f(0.0F, 0.0F);
+        source.slopes(x, y) =
+            !valid || ignore ? below : gradient_from_normal(chart.normal(x, y), base, edit.mode);
+        if (with_base) source.base(x, y) = below;
       }
     }
   });
   extend(source.validity, source.slopes);
+  if (with_base) extend(source.validity, source.base);
   return source;
 }
 
@@ -153,6 +158,7 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   chart.base_normal = {};
   chart.normal = {};
   input.source = source.slopes;
+  input.base = source.base;
   input.validity = source.validity;
   const OperatorResult result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
   source = {};

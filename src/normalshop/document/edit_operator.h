@@ -34,6 +34,7 @@ Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, St
 struct OperatorInput {
   SlopeView source;   ///< before the edit (with details ignored: the base surface); extended past
                       ///< borders; empty unless the operator reads()
+  SlopeView base;     ///< the base surface's numbers, likewise; empty unless reads_base()
   MaskView validity;  ///< the weight of the effective chart: how far source counts; empty likewise
   ColorView colors;   ///< linear; empty unless the operator reads_colors() and there are any
   Border border = Border::Clamp;      ///< what source and colors do beyond their sides
@@ -70,6 +71,8 @@ class EditOperator {
   virtual StrokeUse stroke_use() const { return StrokeUse::Path; }
   /// Does it read the details under it?
   virtual bool reads() const = 0;
+  /// Does it tell the base surface from the details on it? Only for operators that read.
+  virtual bool reads_base() const { return false; }
   /// Does it read the colours too?
   virtual bool reads_colors() const { return false; }
   /// In a picture that is a tile: does it find the other side by input.border alone? Others get

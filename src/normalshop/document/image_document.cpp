@@ -275,6 +275,11 @@ EditReport ImageDocument::apply(const Edit& edit) {
     input.source = pulled.slopes;
     input.validity = weight;
   }
+  SlopeImage base;  // the plane of the picture
+  if (edit.operation->reads_base()) {
+    base = SlopeImage(placed.grid.width(), placed.grid.height(), Vec2f(0.0F, 0.0F));
+    input.base = base;
+  }
   // Within a part of the picture the other side is not there, and out of reach.
   if (placed.window == Rect{0, 0, images_.normals.width(), images_.normals.height()})
     input.border = images_.border;

@@ -13,6 +13,7 @@ namespace {
 struct CombineEditOptions : StampOptions, FilterAreaOptions {
   std::string image;
   bool repeat = false;
+  CombineModel model = CombineModel::Linear;
 
   static constexpr std::array<std::string_view, 1> required_fields{"image"};
   static constexpr auto fields() {
@@ -34,19 +35,21 @@ struct CombineEditOptions : StampOptions, FilterAreaOptions {
                                             "scaled"),
                    field<Own, float>("border", &Own::border, "1", 0.0, 0.5,
                                      "Part of the image's size over which it fades out at its "
-                                     "border; 0 cuts it off; without effect where it repeats")},
+                                     "border; 0 cuts it off; without effect where it repeats"),
+                   field("model", &Own::model,
+                         "How the image meets what is below it: slopes are added (linear), or the "
+                         "surface is turned by the image (rotation), the image "
+                         "is turned to lie on the surface (reoriented), or as game engines do it "
+                         "(whiteout, udn; overlay, which flattens, is for comparison)")},
         filter_area_fields<Own>());
   }
 };
 
-/// change and coverage become those of the mask's part.
-void weigh(MaskView mask, SlopeSpan change, MaskSpan coverage, const Rect& region) {
+template <class Body>
+void for_each_pixel(const Rect& region, const Body& body) {
   parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
     for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        change(x, y) *= mask(x, y);
-        coverage(x, y) *= mask(x, y);
-      }
+      for (int x = region.x0; x < region.x1; ++x) body(x, y);
     }
   });
 }
@@ -63,7 +66,8 @@ class CombineOperator : public EditOperator {
   Value options() const override { return options_value(options_); }
   void load(Assets& assets) override { image_ = assets.patch(options_.image); }
   std::string_view asset_field() const override { return "image"; }
-  bool reads() const override { return false; }
+  bool reads() const override { return options_.model != CombineModel::Linear; }
+  bool reads_base() const override { return options_.model == CombineModel::Rotation; }
   StrokeUse stroke_use() const override { return area_stroke_use(options_); }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
@@ -81,11 +85,28 @@ class CombineOperator : public EditOperator {
     if (region.empty()) return {};
     const auto lay = scaled.repeat ? stamp_repeated : stamp;
     lay(change, coverage, region, image_, input.view_center, scaled);
-    weigh(mask, change, coverage, region);
+    for_each_pixel(region, [&](int x, int y) {
+      // What is not linear takes the image's slopes and its weight apart.
+      if (reads() && coverage(x, y) > 0.0F) change(x, y) /= coverage(x, y);
+      if (!reads()) change(x, y) *= mask(x, y);
+      coverage(x, y) *= mask(x, y);
+    });
+    if (reads()) apply_model(input, change, coverage, region);
     return region;
   }
 
  private:
+  /// From the image's slopes to the change of what is below it.
+  void apply_model(const OperatorInput& input, SlopeSpan change, MaskView weight,
+                   const Rect& region) const {
+    if (options_.model == CombineModel::Rotation) {
+      combine_rotation(input.source, input.base, change, weight, 1.0F, change, region);
+    } else {
+      combine(input.source, change, weight, change, region, {.model = options_.model});
+    }
+    for_each_pixel(region, [&](int x, int y) { change(x, y) -= input.source(x, y); });
+  }
+
   CombineEditOptions options_;
   Patch image_;
 };
