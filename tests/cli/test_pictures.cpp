@@ -149,6 +149,16 @@ TEST_F(Pictures, ShadeLightsFromWhereItIsTold) {
   good({"shade", path("normal.png"), "--color", path("color.png"), "--shadows", "8", "-o",
         path("s.png")});
   EXPECT_EQ(image("s.png").width(), size);
+  for (const std::string style : {"matte", "toon", "lines", "curvature", "exaggerated"}) {
+    good({"shade", path("normal.png"), "--color", path("color.png"), "--style", style, "-o",
+          path(style + ".png")});
+    EXPECT_EQ(image(style + ".png").width(), size) << style;
+  }
+  good({"shade", path("tilted.png"), "--style", "toon", "--set", "bands=1", "-o", path("t.png")});
+  bad({"shade", path("normal.png"), "--style", "toon", "--set", "bands=0", "-o", path("o.png")}, 2,
+      {"--set.bands must be", "from 1 to 32"});
+  bad({"shade", path("normal.png"), "--style", "toon", "--set", "bands", "-o", path("o.png")}, 2,
+      {"NAME=VALUE"});
   bad({"shade", path("normal.png"), "--light", "1,2", "-o", path("o.png")}, 2,
       {"--light", "x,y,z"});
 }
