@@ -69,8 +69,8 @@ void tell(const DemoFlags& flags, const std::string& what, double seconds) {
 std::vector<fs::path> draw(const fs::path& folder, const fs::path& model) {
   const ColorImage before = picture_of(model);
   const ColorImage after = picture_of(folder / "edited" / model.filename());
-  const std::vector<fs::path> pictures{folder / "before.png", folder / "after.png",
-                                       folder / "before_after.png"};
+  std::vector<fs::path> pictures{folder / "before.png", folder / "after.png",
+                                 folder / "before_after.png"};
   write_png_srgb(pictures[0], before);
   write_png_srgb(pictures[1], after);
   write_png_srgb(pictures[2], side_by_side(before, after));

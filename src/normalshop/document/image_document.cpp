@@ -60,7 +60,7 @@ void repeat_strokes(Edit& edit, const Extent& tile) {
   const Vec2f size = tile.high - tile.low;
   const bool points = edit.operation->stroke_use() == StrokeUse::Points;
   std::vector<UnitStroke> all = edit.strokes;
-  const auto add = [&](UnitStroke stroke) {
+  const auto add = [&](const UnitStroke& stroke) {
     const Extent reached = edit.operation->extent({stroke});
     for (int j = -1; j <= 1; ++j) {
       for (int i = -1; i <= 1; ++i) {
