@@ -1,217 +1,117 @@
 #include "normalshop/rgbn/smooth.h"
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "normalshop/core/error.h"
-#include "normalshop/core/parallel.h"
-#include "normalshop/rgbn/detail/gaussian_kernels.h"
+#include "normalshop/rgbn/detail/filter_rows.h"
+#include "normalshop/rgbn/detail/gaussian.h"
+#include "normalshop/rgbn/detail/recursive_filter.h"
+#include "normalshop/rgbn/detail/tile_filter.h"
 
 namespace normalshop {
 
 namespace {
 
-/// Up to here the direct filter is as exact as it is fast (measured in benchmarks/bench_rgbn.cpp).
-constexpr double fir_limit = 8.0;
-/// Less than this weight of valid pixels in reach counts as none.
-constexpr float least_weight = 1e-4F;
+/// Up to here the direct filter is faster than the recursive one.
+constexpr double fir_limit = 5.0;
+/// Samples, in sigmas, after which the recursive filter has forgotten where it began.
+constexpr double memory_in_sigmas = 10.0;
 
-/// Gaussian along one panel, whatever the filter.
-class LineFilter {
- public:
-  explicit LineFilter(double sigma) {
-    direct_ = sigma <= fir_limit;
-    if (direct_) {
-      fir_ = fir_kernel(sigma);
-    } else {
-      recursive_ = recursive_kernel(sigma);
-    }
+int ceil_to_int(double x) { return static_cast<int>(std::ceil(x)); }
+
+}  // namespace
+
+LinePlan::LinePlan(int line_begin, int line_end, int n, double line_sigma, Border border)
+    : begin(line_begin), end(line_end), held_end(n) {
+  if (border == Border::Clamp) {
+    kernel = recursive_kernel(line_sigma);
+    const int margin = gaussian_reach(static_cast<float>(line_sigma));
+    before = std::min(begin, margin);
+    after = std::min(n - end, margin);
+    held_begin = begin - before;
+    held_end = end + after;
+    return;
   }
-  /// Samples that the panel must hold before the first and after the last one.
-  int padding() const { return direct_ ? static_cast<int>(fir_.weights.size()) : 0; }
-  /// `in` starts with the padding.
-  void run(const float* in, int count, float* out) const {
-    if (direct_) {
-      fir_panel(in + padding() * panel_lanes, count, fir_, out);
-    } else {
-      recursive_panel(in, count, recursive_, out);
-    }
-  }
-
- private:
-  bool direct_ = true;
-  FirKernel fir_;
-  RecursiveKernel recursive_{};
-};
-
-/// A range of samples along a line of `size` samples that continues its ends.
-struct Range {
-  int begin;
-  int end;
-  int clamped(int i, int size) const { return std::clamp(begin + i, 0, size - 1); }
-  int count() const { return end - begin; }
-};
-
-/// Buffers of one task.
-struct Panels {
-  Panels(int in_samples, int out_samples)
-      : in(panel_lanes, in_samples, 0.0F), out(panel_lanes, out_samples) {}
-  Image<float> in;
-  Image<float> out;
-};
-
-/// Where the numbers of C channels come from: load(x, y, float[C]) or a whole row.
-template <int C>
-constexpr int panel_pixels = panel_lanes / C;
-
-/// Runs body(panel index, panels) over all panels in parallel, reusing buffers within a task.
-template <class Body>
-void for_each_panel(int panels, int in_samples, int out_samples, const Body& body) {
-  parallel_for(static_cast<std::size_t>(panels), 1, [&](std::size_t a, std::size_t b) {
-    Panels buffers(in_samples, out_samples);
-    for (std::size_t i = a; i < b; ++i) body(static_cast<int>(i), buffers);
-  });
+  // What repeats is flat after a Gaussian as wide as its period (to 3e-9).
+  const double sigma = std::min(line_sigma, border == Border::Wrap ? 1.0 * n : 2.0 * n);
+  kernel = recursive_kernel(sigma);
+  rests = false;
+  const bool whole = end - begin == n;
+  before = after =
+      whole ? ceil_to_int(memory_in_sigmas * sigma) : gaussian_reach(static_cast<float>(sigma));
+  if (end - begin + 2 * before >= n) return;
+  held_begin = begin - before;
+  held_end = end + after;
 }
 
-/// The part of a line that is held: the region with its reach, within the image.
-Range with_reach(int begin, int end, int margin, int size) {
-  return {std::max(0, begin - margin), std::min(size, end + margin)};
+namespace {
+
+/// Finite Gaussians down and along tiles.
+template <class Rows, class Store>
+void smooth_direct(const Rows& rows, const Rect& region, double sigma, const Store& store) {
+  const FirKernel kernel = fir_kernel(sigma);
+  constexpr std::ptrdiff_t channels = Rows::channels;
+  const std::ptrdiff_t side = kernel.radius() * channels;
+  const auto filter_row = [&](const Tile& tile, float* scratch, float* out) {
+    fir_line(tile.at - side, tile.count + 2 * side, tile.stride, kernel, scratch);
+    fir_line(scratch + side, tile.count, channels, kernel, out);
+  };
+  const TileSize size(region, kernel.radius(), kernel.radius(), Rows::channels);
+  filter_tiles(rows, region, size, filter_row, store);
 }
 
-/// Filters down the columns [columns) of a source and writes the rows [region.y0, region.y1) of all
-/// of them into `target`, whose origin is (columns.begin, region.y0). load(x, y, out) gives a
-/// pixel.
-template <int C, class Load>
-void filter_columns(const Load& load, int height, const Range& columns, const Rect& region,
-                    int margin, const LineFilter& filter, Image<float>& target) {
-  constexpr int pixels = panel_pixels<C>;
-  const Range held = with_reach(region.y0, region.y1, margin, height);
-  const int pad = filter.padding();
-  const int skip = pad > 0 ? region.y0 - pad : held.begin;
-  const int in_samples = pad > 0 ? region.height() + 2 * pad : held.count();
-  const int count = pad > 0 ? region.height() : held.count();
-  for_each_panel(
-      (columns.count() + pixels - 1) / pixels, in_samples, count, [&](int panel, Panels& buffers) {
-        const int x0 = columns.begin + panel * pixels;
-        const int x1 = std::min(x0 + pixels, columns.end);
-        for (int i = 0; i < in_samples; ++i) {
-          float* to = buffers.in.row(i);
-          load(x0, x1, std::clamp(skip + i, 0, height - 1), to);
-        }
-        filter.run(buffers.in.data(), count, buffers.out.data());
-        for (int y = region.y0; y < region.y1; ++y) {
-          const float* from = buffers.out.row(pad > 0 ? y - region.y0 : y - skip);
-          std::copy_n(from, (x1 - x0) * C, target.row(y - region.y0) + (x0 - columns.begin) * C);
-        }
-      });
-}
-
-/// Filters along the rows of `source` (origin (columns.begin, region.y0), `width` the whole
-/// image's) and hands every pixel of the region to store(x, y, const float[C]).
-template <int C, class Store>
-void filter_rows(const Image<float>& source, const Range& columns, const Rect& region,
-                 const LineFilter& filter, const Store& store) {
-  constexpr int pixels = panel_pixels<C>;
-  const int pad = filter.padding();
-  const int first = pad > 0 ? region.x0 - pad : columns.begin;
-  const int in_samples = pad > 0 ? region.width() + 2 * pad : columns.count();
-  const int count = pad > 0 ? region.width() : columns.count();
-  for_each_panel((region.height() + pixels - 1) / pixels, in_samples, count,
-                 [&](int panel, Panels& buffers) {
-                   const int y0 = panel * pixels;
-                   const int rows = std::min(pixels, region.height() - y0);
-                   for (int r = 0; r < rows; ++r) {
-                     const float* from = source.row(y0 + r);
-                     float* to = buffers.in.data() + r * C;
-                     for (int i = 0; i < in_samples; ++i, to += panel_lanes) {
-                       const int x = std::clamp(first + i - columns.begin, 0, columns.count() - 1);
-                       for (int c = 0; c < C; ++c) to[c] = from[x * C + c];
-                     }
-                   }
-                   filter.run(buffers.in.data(), count, buffers.out.data());
-                   for (int r = 0; r < rows; ++r) {
-                     const float* from =
-                         buffers.out.data() + r * C +
-                         static_cast<std::ptrdiff_t>(pad > 0 ? 0 : region.x0 - first) * panel_lanes;
-                     for (int x = region.x0; x < region.x1; ++x, from += panel_lanes) {
-                       store(x, region.y0 + y0 + r, from);
-                     }
-                   }
-                 });
-}
-
-template <int C, class Load, class Store>
-void filter(const Load& load, const Rect& image, const Rect& region, const SmoothOptions& options,
-            const Store& store) {
-  const LineFilter line(static_cast<double>(options.sigma));
-  const int margin = reach(options);
-  const Range columns = with_reach(region.x0, region.x1, margin, image.width());
-  Image<float> between(columns.count() * C, region.height());
-  filter_columns<C>(load, image.height(), columns, region, margin, line, between);
-  filter_rows<C>(between, columns, region, line, store);
-}
-
+/// The output as numbers.
 template <class T>
-constexpr int channels_of = static_cast<int>(sizeof(T) / sizeof(float));
+ImageSpan<float> number_span(const Output<T>& output, const Rect& region) {
+  constexpr int channels = channels_of<T>;
+  T* first = output.at(region.x0, region.y0);
+  const std::ptrdiff_t stride =
+      region.height() > 1 ? output.at(region.x0, region.y0 + 1) - first : region.width();
+  return {numbers(first), region.width() * channels, region.height(), stride * channels};
+}
 
-template <class T>
-const float* numbers(const T* pixel) {
-  if constexpr (channels_of<T> == 1) {
-    return pixel;
+template <class Rows, class Store>
+void smooth_recursive(const Rows& rows, const Rect& region, double sigma, const Store& store) {
+  const int width = rows.width();
+  const LinePlan across(region.x0, region.x1, width, sigma, rows.border());
+  const LinePlan down(region.y0, region.y1, rows.height(), sigma, rows.border());
+  const int x0 = across.held_begin;
+  const int x1 = across.held_end;
+  // The columns' results stay in the target where they fit.
+  const bool fits = !Rows::is_masked && x0 == region.x0 && x1 == region.x1;
+  Image<float> memory;
+  if (!fits) memory.resize((x1 - x0) * Rows::channels, region.height());
+  const ImageSpan<float> between =
+      fits ? number_span(store.output, region) : ImageSpan<float>(memory);
+  filter_columns(rows, x0, x1, down, between);
+  filter_rows<Rows>(BetweenRows{between, x0, x1, width, rows.border()}, region.y0, across, store);
+}
+
+template <class Rows, class Store>
+void smooth_rows(const Rows& rows, const Rect& region, double sigma, const Store& store) {
+  if (sigma <= fir_limit) {
+    smooth_direct(rows, region, sigma, store);
   } else {
-    return pixel->data();
+    smooth_recursive(rows, region, sigma, store);
   }
 }
 
 template <class T>
-void set(T& pixel, const float* from) {
-  if constexpr (channels_of<T> == 1) {
-    pixel = *from;
+void smooth_into(ImageView<T> source, MaskView validity, const Rect& region, float sigma,
+                 Border border, const Output<T>& output) {
+  const auto wide = static_cast<double>(sigma);
+  if (validity.empty()) {
+    const ExtendedRows<T, false> rows(source, validity, border);
+    smooth_rows(rows, region, wide, PlainStore<T>{output});
   } else {
-    pixel = Eigen::Map<const T>(from);
+    const ExtendedRows<T, true> rows(source, validity, border);
+    smooth_rows(rows, region, wide, ValidStore<T>{output, source});
   }
-}
-
-template <class T>
-void smooth_all(ImageView<T> source, ImageSpan<T> target, const Rect& region,
-                const SmoothOptions& options) {
-  constexpr int C = channels_of<T>;
-  filter<C>([&](int x0, int x1, int y,
-                float* to) { std::copy_n(numbers(source.row(y) + x0), (x1 - x0) * C, to); },
-            source.rect(), region, options,
-            [&](int x, int y, const float* from) { set(target(x, y), from); });
-}
-
-/// Normalised convolution: filters validity * source and validity.
-template <class T>
-void smooth_valid(ImageView<T> source, MaskView validity, ImageSpan<T> target, const Rect& region,
-                  const SmoothOptions& options) {
-  constexpr int C = channels_of<T>;
-  filter<C + 1>(
-      [&](int x0, int x1, int y, float* to) {
-        for (int x = x0; x < x1; ++x) {
-          const float weight = validity(x, y);
-          const float* from = numbers(source.row(y) + x);
-          for (int c = 0; c < C; ++c) *to++ = weight > 0.0F ? weight * from[c] : 0.0F;
-          *to++ = weight;
-        }
-      },
-      source.rect(), region, options,
-      [&](int x, int y, const float* from) {
-        if (!(from[C] > least_weight)) {
-          target(x, y) = source(x, y);
-          return;
-        }
-        std::array<float, C> out;
-        for (int c = 0; c < C; ++c) out[static_cast<std::size_t>(c)] = from[c] / from[C];
-        set(target(x, y), out.data());
-      });
 }
 
 template <class T>
 Rect smooth_any(ImageView<T> source, MaskView validity, ImageSpan<T> target, Rect region,
-                const SmoothOptions& options) {
+                const SmoothOptions& options, Border border) {
   if (!(options.sigma >= 0.0F) || !std::isfinite(options.sigma)) {
     throw InvalidInput("smooth: sigma must be a number of at least 0");
   }
@@ -219,36 +119,43 @@ Rect smooth_any(ImageView<T> source, MaskView validity, ImageSpan<T> target, Rec
   region = intersect(region, target.rect());
   if (region.empty()) return {};
   if (options.sigma == 0.0F) {
-    for (int y = region.y0; y < region.y1; ++y) {
-      std::copy(source.row(y) + region.x0, source.row(y) + region.x1, target.row(y) + region.x0);
-    }
-  } else if (validity.empty()) {
-    smooth_all(source, target, region, options);
-  } else {
-    smooth_valid(source, validity, target, region, options);
+    copy_rows(source, {}, target, region);
+    return region;
   }
+  write_apart<T>(target, region, share_memory(target, source) || share_memory(target, validity),
+                 [&](const Output<T>& output) {
+                   smooth_into(source, validity, region, options.sigma, border, output);
+                 });
   return region;
 }
 
 }  // namespace
 
+SlopeImage gaussian(SlopeView source, MaskView validity, const Rect& region, float sigma,
+                    Border border) {
+  SlopeImage result(region.width(), region.height());
+  smooth_into(source, validity, region, sigma, border,
+              Output<Vec2f>{result, {region.x0, region.y0}});
+  return result;
+}
+
+int gaussian_reach(float sigma) { return ceil_to_int(4.0 * static_cast<double>(sigma)); }
+
 Rect smooth(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
-            const SmoothOptions& options) {
-  return smooth_any<Vec2f>(source, validity, target, region, options);
+            const SmoothOptions& options, Border border) {
+  return smooth_any<Vec2f>(source, validity, target, region, options, border);
 }
 
 Rect smooth(MaskView source, MaskView validity, MaskSpan target, Rect region,
-            const SmoothOptions& options) {
-  return smooth_any<float>(source, validity, target, region, options);
+            const SmoothOptions& options, Border border) {
+  return smooth_any<float>(source, validity, target, region, options, border);
 }
 
 Rect smooth(ColorView source, MaskView validity, ColorSpan target, Rect region,
-            const SmoothOptions& options) {
-  return smooth_any<Vec3f>(source, validity, target, region, options);
+            const SmoothOptions& options, Border border) {
+  return smooth_any<Vec3f>(source, validity, target, region, options, border);
 }
 
-int reach(const SmoothOptions& options) {
-  return static_cast<int>(std::ceil(4.0 * static_cast<double>(options.sigma)));
-}
+int reach(const SmoothOptions& options) { return gaussian_reach(options.sigma); }
 
 }  // namespace normalshop
