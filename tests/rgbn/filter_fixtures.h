@@ -114,20 +114,17 @@ using Response = std::function<std::complex<double>(double kx, double ky)>;
 /// The slopes of the sum of the waves, each after the filter.
 inline SlopeImage wave_slopes(int width, int height, const Response& response) {
   constexpr double turn = 6.283185307179586;
-  SlopeImage image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      double sx = 0.0;
-      double sy = 0.0;
-      for (const Wave& wave : test_waves()) {
-        const double kx = turn * wave.across / width;
-        const double ky = turn * wave.down / height;
-        const std::complex<double> z =
-            wave.amplitude * std::polar(1.0, kx * x + ky * y + wave.phase) * response(kx, ky);
-        sx -= kx * z.imag();
-        sy += ky * z.imag();  // up
+  SlopeImage image(width, height, Vec2f::Zero());
+  for (const Wave& wave : test_waves()) {
+    const double kx = turn * wave.across / width;
+    const double ky = turn * wave.down / height;
+    const std::complex<double> factor =
+        wave.amplitude * std::polar(1.0, wave.phase) * response(kx, ky);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const double z = (factor * std::polar(1.0, kx * x + ky * y)).imag();
+        image(x, y) += Vec2f(static_cast<float>(-kx * z), static_cast<float>(ky * z));  // y up
       }
-      image(x, y) = {static_cast<float>(sx), static_cast<float>(sy)};
     }
   }
   return image;

@@ -67,6 +67,7 @@ SlopeImage plain(const SlopeImage& image, const Image<float>& kernel, Border bor
         }
       }
       if (!valid.empty()) sum += missing * mean / size;
+      if (size == 0.0) sum = image(x, y).cast<double>();  // nothing valid in reach
       out(x, y) = sum.cast<float>();
     }
   }

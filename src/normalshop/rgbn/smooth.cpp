@@ -5,107 +5,158 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/detail/filter_rows.h"
 #include "normalshop/rgbn/detail/gaussian.h"
-#include "normalshop/rgbn/detail/recursive_filter.h"
+#include "normalshop/rgbn/detail/lattice.h"
+#include "normalshop/rgbn/detail/rows.h"
 #include "normalshop/rgbn/detail/tile_filter.h"
 
 namespace normalshop {
 
 namespace {
 
-/// Up to here the direct filter is faster than the recursive one.
-constexpr double fir_limit = 5.0;
-/// Samples, in sigmas, after which the recursive filter has forgotten where it began.
-constexpr double memory_in_sigmas = 10.0;
+/// Up to here the direct filter is the fastest: among pixels, and among the few points of a
+/// lattice, where it is nearly free.
+constexpr double pixels_limit = 4.0;
+constexpr double points_limit = 16.0;
 
-int ceil_to_int(double x) { return static_cast<int>(std::ceil(x)); }
+/// The Gaussian along one axis, or with bend != 0 bend times its second derivative, of which the
+/// filter takes the sum over both axes.
+struct Axis {
+  double sigma;
+  double bend = 0.0;
+};
+struct Axes {
+  Axis x;
+  Axis y;
+};
 
-}  // namespace
-
-LinePlan::LinePlan(int line_begin, int line_end, int n, double line_sigma, Border border)
-    : begin(line_begin), end(line_end), held_end(n) {
-  if (border == Border::Clamp) {
-    kernel = recursive_kernel(line_sigma);
-    const int margin = gaussian_reach(static_cast<float>(line_sigma));
-    before = std::min(begin, margin);
-    after = std::min(n - end, margin);
-    held_begin = begin - before;
-    held_end = end + after;
-    return;
-  }
-  // What repeats is flat after a Gaussian as wide as its period (to 3e-9).
-  const double sigma = std::min(line_sigma, border == Border::Wrap ? 1.0 * n : 2.0 * n);
-  kernel = recursive_kernel(sigma);
-  rests = false;
-  const bool whole = end - begin == n;
-  before = after =
-      whole ? ceil_to_int(memory_in_sigmas * sigma) : gaussian_reach(static_cast<float>(sigma));
-  if (end - begin + 2 * before >= n) return;
-  held_begin = begin - before;
-  held_end = end + after;
+Lattice lattice_of(const Axis& axis, double limit) {
+  return {axis.sigma,
+          axis.sigma <= limit ? 1 : std::clamp(static_cast<int>(axis.sigma / 1.6), 2, 8)};
 }
 
-namespace {
+/// What is left to do between the points of a lattice.
+Axis rest_of(const Axis& axis, const Lattice& lattice) {
+  return {lattice.rest, axis.bend / (lattice.step * lattice.step)};
+}
 
-/// Finite Gaussians down and along tiles.
+struct AxisWeights {
+  explicit AxisWeights(const Axis& axis) : smoothing(gaussian_weights(axis.sigma)) {
+    if (axis.bend == 0.0) return;
+    bending = bending_weights(axis.sigma);
+    for (double& w : bending) w *= axis.bend;
+  }
+  int radius() const { return static_cast<int>(std::max(smoothing.size(), bending.size())); }
+  std::vector<double> smoothing;
+  std::vector<double> bending;
+};
+
+int axis_reach(const Axis& axis, double limit) {
+  if (axis.sigma <= limit) return AxisWeights(axis).radius();
+  const Lattice lattice = lattice_of(axis, limit);
+  const int points = axis_reach(rest_of(axis, lattice), points_limit) + lattice.after;
+  return points * lattice.step + lattice.radius();
+}
+
+/// The sums of one axis over numbers that are `step` apart.
+struct AxisSums {
+  AxisSums(const AxisWeights& weights, std::ptrdiff_t step)
+      : smoothing(line_pairs(weights.smoothing, step)),
+        bending(line_pairs(weights.bending, step)) {}
+  WeightedPairs smoothing;
+  WeightedPairs bending;
+};
+
+/// Finite filters down and along tiles.
 template <class Rows, class Store>
-void smooth_direct(const Rows& rows, const Rect& region, double sigma, const Store& store) {
-  const FirKernel kernel = fir_kernel(sigma);
+void filter_direct(const Rows& rows, const Rect& region, const Axes& axes, const Store& store) {
   constexpr std::ptrdiff_t channels = Rows::channels;
-  const std::ptrdiff_t side = kernel.radius() * channels;
+  const AxisWeights x(axes.x);
+  const AxisWeights y(axes.y);
+  const TileSize size(region, x.radius(), y.radius(), Rows::channels);
+  const AxisSums along(x, channels);
+  const AxisSums down(y, size.stride());
+  const std::ptrdiff_t side = x.radius() * channels;
   const auto filter_row = [&](const Tile& tile, float* scratch, float* out) {
-    fir_line(tile.at - side, tile.count + 2 * side, tile.stride, kernel, scratch);
-    fir_line(scratch + side, tile.count, channels, kernel, out);
+    const std::ptrdiff_t wide = tile.count + 2 * side;
+    pairs_around(tile.at - side, wide, down.smoothing, scratch);
+    if (x.bending.empty()) return pairs_around(scratch + side, tile.count, along.smoothing, out);
+    float* bent_down = scratch + wide;
+    float* bent_along = bent_down + wide;
+    pairs_only(tile.at - side, wide, down.bending, bent_down);
+    pairs_only(scratch + side, tile.count, along.bending, bent_along);
+    pairs_around(bent_down + side, tile.count, along.smoothing, out);
+    for (std::ptrdiff_t i = 0; i < tile.count; ++i) out[i] += bent_along[i];
   };
-  const TileSize size(region, kernel.radius(), kernel.radius(), Rows::channels);
   filter_tiles(rows, region, size, filter_row, store);
 }
 
-/// The output as numbers.
-template <class T>
-ImageSpan<float> number_span(const Output<T>& output, const Rect& region) {
-  constexpr int channels = channels_of<T>;
-  T* first = output.at(region.x0, region.y0);
-  const std::ptrdiff_t stride =
-      region.height() > 1 ? output.at(region.x0, region.y0 + 1) - first : region.width();
-  return {numbers(first), region.width() * channels, region.height(), stride * channels};
-}
-
-template <class Rows, class Store>
-void smooth_recursive(const Rows& rows, const Rect& region, double sigma, const Store& store) {
-  const int width = rows.width();
-  const LinePlan across(region.x0, region.x1, width, sigma, rows.border());
-  const LinePlan down(region.y0, region.y1, rows.height(), sigma, rows.border());
-  const int x0 = across.held_begin;
-  const int x1 = across.held_end;
-  // The columns' results stay in the target where they fit.
-  const bool fits = !Rows::is_masked && x0 == region.x0 && x1 == region.x1;
-  Image<float> memory;
-  if (!fits) memory.resize((x1 - x0) * Rows::channels, region.height());
-  const ImageSpan<float> between =
-      fits ? number_span(store.output, region) : ImageSpan<float>(memory);
-  filter_columns(rows, x0, x1, down, between);
-  filter_rows<Rows>(BetweenRows{between, x0, x1, width, rows.border()}, region.y0, across, store);
-}
-
-template <class Rows, class Store>
-void smooth_rows(const Rows& rows, const Rect& region, double sigma, const Store& store) {
-  if (sigma <= fir_limit) {
-    smooth_direct(rows, region, sigma, store);
-  } else {
-    smooth_recursive(rows, region, sigma, store);
+/// The points that there are along an axis of n pixels. Beyond those of Clamp all are alike.
+struct Range {
+  int begin;
+  int end;
+};
+Range all_points(const Lattice& lattice, int n, int reach, Border border) {
+  const int radius = lattice.radius();
+  if (border == Border::Clamp) {
+    return {lattice.point_of(-radius), lattice.point_of(n - 1 + radius + lattice.step - 1) + 1};
   }
+  return {lattice.point_of(0) - lattice.before - reach,
+          lattice.point_of(n - 1) + lattice.after + reach + 1};
+}
+
+template <class Rows, class Store>
+void filter_axes(const Rows& rows, const Rect& region, const Axes& axes, double limit,
+                 const Store& store) {
+  if (std::max(axes.x.sigma, axes.y.sigma) <= limit) {
+    return filter_direct(rows, region, axes, store);
+  }
+  using Pixel = Numbers<Rows::channels>;
+  const Lattices lattices{lattice_of(axes.x, limit), lattice_of(axes.y, limit)};
+  const Axes rest{rest_of(axes.x, lattices.x), rest_of(axes.y, lattices.y)};
+  const int reach_x = axis_reach(rest.x, points_limit);
+  const int reach_y = axis_reach(rest.y, points_limit);
+  const Range across = all_points(lattices.x, rows.width(), reach_x, rows.border());
+  const Range down = all_points(lattices.y, rows.height(), reach_y, rows.border());
+  const auto from_first = [&](const Rect& r) {
+    return Rect{r.x0 - across.begin, r.y0 - down.begin, r.x1 - across.begin, r.y1 - down.begin};
+  };
+  const Rect wanted = lattices.points_for(region);
+  const Rect held = intersect(
+      {wanted.x0 - reach_x, wanted.y0 - reach_y, wanted.x1 + reach_x, wanted.y1 + reach_y},
+      {across.begin, down.begin, across.end, down.end});
+  const Image<Pixel> points = take_points(rows, lattices, held);
+  const ExtendedRows<Pixel, false> point_rows(points, {}, Border::Clamp, from_first(held),
+                                              across.end - across.begin, down.end - down.begin);
+  Image<Pixel> filtered(wanted.width(), wanted.height());
+  const Rect inner = from_first(wanted);
+  filter_axes(point_rows, inner, rest, points_limit,
+              PlainStore<Pixel>{{filtered, {inner.x0, inner.y0}}});
+  join_points<Rows::channels>(filtered, lattices, region, store);
+}
+
+/// What repeats is flat after a Gaussian as wide as its period (to 3e-9), so that wider ones give
+/// the same.
+double useful_sigma(float sigma, int n, Border border) {
+  const auto wide = static_cast<double>(sigma);
+  if (border == Border::Clamp) return wide;
+  return std::min(wide, border == Border::Wrap ? 1.0 * n : 2.0 * n);
+}
+
+Axes gaussian_axes(float sigma, const Rect& image, Border border) {
+  return {{useful_sigma(sigma, image.width(), border)},
+          {useful_sigma(sigma, image.height(), border)}};
 }
 
 template <class T>
 void smooth_into(ImageView<T> source, MaskView validity, const Rect& region, float sigma,
                  Border border, const Output<T>& output) {
-  const auto wide = static_cast<double>(sigma);
+  const Axes axes = gaussian_axes(sigma, source.rect(), border);
   if (validity.empty()) {
-    const ExtendedRows<T, false> rows(source, validity, border);
-    smooth_rows(rows, region, wide, PlainStore<T>{output});
+    filter_axes(ExtendedRows<T, false>(source, validity, border), region, axes, pixels_limit,
+                PlainStore<T>{output});
   } else {
-    const ExtendedRows<T, true> rows(source, validity, border);
-    smooth_rows(rows, region, wide, ValidStore<T>{output, source});
+    filter_axes(ExtendedRows<T, true>(source, validity, border), region, axes, pixels_limit,
+                ValidStore<T>{output, source});
   }
 }
 
@@ -139,7 +190,36 @@ SlopeImage gaussian(SlopeView source, MaskView validity, const Rect& region, flo
   return result;
 }
 
-int gaussian_reach(float sigma) { return ceil_to_int(4.0 * static_cast<double>(sigma)); }
+SlopeImage laplacian(SlopeView source, MaskView validity, const Rect& region, float sigma,
+                     Border border) {
+  Axes axes = gaussian_axes(sigma, source.rect(), border);
+  for (Axis* axis : {&axes.x, &axes.y}) axis->bend = -axis->sigma * axis->sigma;
+  SlopeImage result(region.width(), region.height());
+  const Origin origin{region.x0, region.y0};
+  if (validity.empty()) {
+    filter_axes(ExtendedRows<Vec2f, false>(source, validity, border), region, axes, pixels_limit,
+                PlainStore<Vec2f>{{result, origin}});
+    return result;
+  }
+  using Weighed = Numbers<3>;
+  Image<Weighed> bent(region.width(), region.height());
+  filter_axes(ExtendedRows<Vec2f, true>(source, validity, border), region, axes, pixels_limit,
+              PlainStore<Weighed>{{bent, origin}});
+  const SlopeImage mean = gaussian(source, validity, region, sigma, border);
+  for_pixels(result.rect(), [&](int x, int y) {
+    const auto& [bent_x, bent_y, weight] = bent(x, y);
+    result(x, y) = Vec2f(bent_x, bent_y) - weight * mean(x, y);
+  });
+  return result;
+}
+
+int gaussian_reach(float sigma) {
+  return sigma > 0.0F ? axis_reach({static_cast<double>(sigma)}, pixels_limit) : 0;
+}
+
+int laplacian_reach(float sigma) {
+  return sigma > 0.0F ? axis_reach({static_cast<double>(sigma), 1.0}, pixels_limit) : 0;
+}
 
 Rect smooth(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
             const SmoothOptions& options, Border border) {

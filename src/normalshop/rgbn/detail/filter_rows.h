@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "normalshop/core/border.h"
 #include "normalshop/core/image.h"
@@ -17,7 +18,7 @@ constexpr int channels_of = static_cast<int>(sizeof(T) / sizeof(float));
 /// The numbers of a row of pixels.
 template <class T>
 float* numbers(T* pixels) {
-  if constexpr (channels_of<T> == 1) {
+  if constexpr (std::is_same_v<T, float>) {
     return pixels;
   } else {
     return pixels->data();

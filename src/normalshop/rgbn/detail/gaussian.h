@@ -9,8 +9,13 @@ namespace normalshop {
 /// > 0; the region lies in the source and is not empty.
 SlopeImage gaussian(SlopeView source, MaskView validity, const Rect& region, float sigma,
                     Border border);
+/// Likewise -sigma^2 times the Laplacian of the smoothed slopes. Pixels that are not valid count as
+/// the Gaussian mean of those that are.
+SlopeImage laplacian(SlopeView source, MaskView validity, const Rect& region, float sigma,
+                     Border border);
 
-/// Pixels that a Gaussian reads beyond its region.
+/// Pixels that they read beyond the region.
 int gaussian_reach(float sigma);
+int laplacian_reach(float sigma);
 
 }  // namespace normalshop

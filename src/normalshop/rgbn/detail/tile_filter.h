@@ -13,9 +13,9 @@ namespace normalshop {
 struct TileSize {
   TileSize(const Rect& region, int radius_x, int radius_y, int pixel_channels)
       : reach_x(radius_x), reach_y(radius_y), channels(pixel_channels) {
-    // About 64 rows of 4 KiB; more where most of that would be surroundings.
-    width = std::min(region.width(), std::max(1024 / channels, 4 * reach_x));
-    height = std::min(region.height(), std::max(64, 2 * reach_y));
+    // Long rows, which memory delivers fastest; more of them where most would be surroundings.
+    width = std::min(region.width(), std::max(8192 / channels, 4 * reach_x));
+    height = std::min(region.height(), std::max(32, 2 * reach_y));
   }
   std::ptrdiff_t stride() const { return (width + 2 * reach_x) * channels; }
   int reach_x;
