@@ -59,7 +59,7 @@ TEST_P(GaussianKernel, DeviatesLittleFromTheTrueGaussian) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sigmas, GaussianKernel,
-                         testing::Values(0.3F, 1.0F, 3.0F, 7.9F, 8.1F, 10.0F, 30.0F, 100.0F,
+                         testing::Values(0.3F, 1.0F, 3.0F, 4.1F, 5.0F, 8.0F, 10.0F, 30.0F, 100.0F,
                                          500.0F));
 
 TEST(Smooth, KeepsConstantSlopesToTheLastBit) {
@@ -137,7 +137,7 @@ TEST(Smooth, InvalidPixelsDoNotCount) {
 TEST(Smooth, ARegionGivesThePixelsOfTheWhole) {
   const SlopeImage image = noise_image(300, 260);
   const Rect region = {111, 97, 170, 143};
-  for (const float sigma : {3.0F, 12.0F}) {
+  for (const float sigma : {3.0F, 12.0F, 100.0F}) {
     SlopeImage whole(300, 260);
     SlopeImage part(300, 260, Vec2f::Constant(9.0F));
     smooth(image, {}, whole, image.rect(), {.sigma = sigma});
@@ -145,7 +145,7 @@ TEST(Smooth, ARegionGivesThePixelsOfTheWhole) {
     for (int y = 0; y < 260; ++y) {
       for (int x = 0; x < 300; ++x) {
         if (region.contains(x, y)) {
-          EXPECT_LT((whole(x, y) - part(x, y)).norm(), 2e-4F);
+          EXPECT_EQ(whole(x, y), part(x, y));
         } else {
           EXPECT_EQ(part(x, y), Vec2f(Vec2f::Constant(9.0F)));
         }

@@ -54,33 +54,29 @@ SlopeImage plain_gaussian(const SlopeImage& image, double sigma) {
 
 TEST(SmoothBorders, ClampedDirectFilterHasTheBitsOfItsFormula) {
   const SlopeImage image = noise_slopes(301, 97);
-  for (const float sigma : {0.3F, 1.0F, 2.0F, 4.5F}) {
+  for (const float sigma : {0.3F, 1.0F, 2.0F, 4.0F}) {
     EXPECT_TRUE(same_bits(smoothed(image, sigma, Border::Clamp),
                           plain_gaussian(image, static_cast<double>(sigma))))
         << sigma;
   }
 }
 
+// Wide Gaussians see the image through points at absolute places, so moving it changes them a
+// little: by less than the 1e-4 of the slope range (2 here) that every filter keeps to.
 TEST(SmoothBorders, WhatTilesKeepsTiling) {
   const SlopeImage image = noise_slopes(61, 47);
   const MaskImage valid = noise_mask(61, 47);
   const SlopeImage moved = rolled(image, 17, 29);
   const MaskImage moved_valid = rolled(valid, 17, 29);
-  for (const float sigma : {0.5F, 2.0F, 5.0F}) {
-    EXPECT_TRUE(same_bits(smoothed(moved, sigma, Border::Wrap),
-                          rolled(smoothed(image, sigma, Border::Wrap), 17, 29)))
+  for (const float sigma : {0.5F, 2.0F, 4.0F, 5.5F, 9.0F, 40.0F, 300.0F}) {
+    const float most = sigma <= 4.0F ? 0.0F : 1e-4F * 2.0F;
+    EXPECT_LE(largest_difference(smoothed(moved, sigma, Border::Wrap),
+                                 rolled(smoothed(image, sigma, Border::Wrap), 17, 29)),
+              most)
         << sigma;
-    EXPECT_TRUE(same_bits(smoothed(moved, sigma, Border::Wrap, moved_valid),
-                          rolled(smoothed(image, sigma, Border::Wrap, valid), 17, 29)))
-        << sigma;
-  }
-  for (const float sigma : {5.5F, 9.0F, 40.0F, 300.0F}) {
-    const SlopeImage still = smoothed(image, sigma, Border::Wrap);
-    const SlopeImage apart = smoothed(moved, sigma, Border::Wrap);
-    EXPECT_LT(largest_difference(apart, rolled(still, 17, 29)), 2e-6F) << sigma;
-    EXPECT_LT(largest_difference(smoothed(moved, sigma, Border::Wrap, moved_valid),
+    EXPECT_LE(largest_difference(smoothed(moved, sigma, Border::Wrap, moved_valid),
                                  rolled(smoothed(image, sigma, Border::Wrap, valid), 17, 29)),
-              1e-5F)
+              most)
         << sigma;
   }
 }
@@ -151,13 +147,12 @@ TEST(SmoothBorders, ARegionGivesThePixelsOfTheWhole) {
   for (const Border border : borders) {
     for (const Rect& region : {Rect{0, 0, 20, 15}, Rect{140, 100, 160, 130}, Rect{50, 40, 90, 60},
                                Rect{0, 30, 160, 40}, Rect{30, 0, 40, 130}}) {
-      for (const float sigma : {2.0F, 9.0F}) {
+      for (const float sigma : {2.0F, 9.0F, 60.0F}) {
         for (const MaskView mask : {MaskView{}, valid.view()}) {
           const SlopeImage whole = smoothed(image, sigma, border, mask);
           SlopeImage part(160, 130, Vec2f::Constant(9.0F));
           EXPECT_EQ(smooth(image, mask, part, region, {.sigma = sigma}, border), region);
-          const float apart = largest_difference(cut(whole, region), cut(part, region));
-          EXPECT_LE(apart, sigma < 5.0F ? 0.0F : 2e-4F) << name_of(border) << sigma;
+          EXPECT_TRUE(same_bits(cut(whole, region), cut(part, region))) << name_of(border) << sigma;
           EXPECT_EQ(part(region.x0 == 0 ? 159 : 0, 70), Vec2f(Vec2f::Constant(9.0F)))
               << (region.y0 <= 70 && region.width() == 160);
         }

@@ -6,7 +6,7 @@ namespace {
 
 // In steps: sigma and cut of the Gaussians before and after the points.
 constexpr double narrow_sigma = 1.0;
-constexpr double narrow_cut = 5.6;
+constexpr double narrow_cut = 5.0;
 constexpr double join_sigma = 0.85;
 constexpr double join_cut = 3.6;
 

@@ -86,18 +86,35 @@ class AlongRows {
     }
   }
   void run(int y, float* out) {
-    rows_.read(x0_, x0_ + width_ * x_.step, y, row_.data());
-    for (int p = 0; p < x_.step; ++p) {
-      const float* from = row_.data() + p * C;
-      float* to = phases_.row(p);
-      for (int i = 0; i < width_; ++i, from += x_.step * C, to += C) {
-        std::memcpy(to, from, C * sizeof(float));
-      }
+    // What lies in memory is not copied first.
+    const int a = std::clamp((x_.step - 1 - x0_) / x_.step, 0, width_);
+    const int b = std::clamp((rows_.width() - x0_) / x_.step, a, width_);
+    const float* inside = rows_.direct(x0_ + a * x_.step, x0_ + b * x_.step, y);
+    if (inside == nullptr) {
+      spread_copy(0, width_, y);
+    } else {
+      spread_copy(0, a, y);
+      spread(a, b, inside);
+      spread_copy(b, width_, y);
     }
     pairs_around(phases_.data() + margin_ * C, count_ * C, sum_, out);
   }
 
  private:
+  /// The pixels of points [a, b) to their phases.
+  void spread(int a, int b, const float* pixels) {
+    for (int p = 0; p < x_.step; ++p) {
+      const float* from = pixels + p * C;
+      float* to = phases_.row(p) + a * C;
+      for (int i = a; i < b; ++i, from += x_.step * C, to += C) {
+        std::memcpy(to, from, C * sizeof(float));
+      }
+    }
+  }
+  void spread_copy(int a, int b, int y) {
+    rows_.read(x0_ + a * x_.step, x0_ + b * x_.step, y, row_.data());
+    spread(a, b, row_.data());
+  }
   /// Of a pixel so far from a point, from phase to phase of the row.
   std::ptrdiff_t offset(int pixel) const {
     return (x_.phase_of(pixel) * width_ + x_.point_of(pixel)) * C;
@@ -124,7 +141,7 @@ Image<Numbers<Rows::channels>> take_points(const Rows& rows, const Lattices& lat
   const int numbers = points.width() * C;
   const WeightedPairs down = line_pairs(y.narrow, numbers);
   Image<Numbers<C>> result(points.width(), points.height());
-  for_bands(points.height(), band_points, [&](int a, int b) {
+  for_bands(points.height(), std::max(band_points, points.height() / 8), [&](int a, int b) {
     const int top = (points.y0 + a) * y.step - radius;
     AlongRows<Rows> along(rows, lattices.x, points.x0, points.x1);
     Image<float> band(numbers, (b - a - 1) * y.step + 2 * radius + 1);
@@ -142,8 +159,8 @@ class JoinLines {
  public:
   JoinLines(const Lattice& lattice, int most)
       : lattice_(lattice),
-        lines_(most, lattice.before + lattice.after + 1),
-        sums_(lattice.sums(most)) {}
+        lines_(most + 16, lattice.before + lattice.after + 1),
+        sums_(lattice.sums(most + 16)) {}
   /// `count` numbers; neighbours are `stride` apart.
   void take(const float* at, int count, std::ptrdiff_t stride) {
     count_ = count;
@@ -186,7 +203,7 @@ void join_along(const Numbers<C>* values, int first, const Lattice& x, int x0, i
 template <int C, class Store>
 void join_points(const Image<Numbers<C>>& values, const Lattices& lattices, const Rect& region,
                  const Store& store) {
-  constexpr int strip = 1024 / C;
+  constexpr int strip = 512 / C;
   const Lattice& x = lattices.x;
   const Lattice& y = lattices.y;
   const Rect points = lattices.points_for(region);
