@@ -179,4 +179,17 @@ inline double gauss_response(double sigma, double k) {
   return response / sum;
 }
 
+/// Response of a sampled second derivative of a Gaussian along one axis.
+inline double bend_response(double sigma, double k) {
+  double moment = 0.0;
+  double response = 0.0;
+  for (int i = 1; i <= static_cast<int>(std::ceil(9.0 * sigma)); ++i) {
+    const double t = i * i / (sigma * sigma);
+    const double weight = (t - 1.0) * std::exp(-0.5 * t);
+    moment += i * i * weight;
+    response += 2.0 * weight * (std::cos(k * i) - 1.0);
+  }
+  return response / moment;
+}
+
 }  // namespace normalshop

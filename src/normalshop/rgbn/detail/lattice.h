@@ -14,9 +14,9 @@
 namespace normalshop {
 
 /// A wide Gaussian along one axis as three: a narrow one, of whose result the points at multiples
-/// of `step` are kept; the rest, between those; and a narrow one that joins the points. What the
-/// first lets through beyond half the points' frequency and what the last leaves of the points
-/// themselves is less than 1e-6 and 2e-5 of the input.
+/// of `step` are kept; the rest, between those; and a narrow one that joins the points. A wave
+/// comes back at other frequencies, too fine for the points or seen as the points, with less than
+/// 1e-5 and 5e-5 of its amplitude.
 ///
 /// Points lie at absolute places, so that every region sees the same ones. step 1: all is rest.
 struct Lattice {
