@@ -4,11 +4,11 @@
 #include <cassert>
 #include <cstddef>
 #include <memory>
-#include <new>
 #include <type_traits>
 #include <utility>
 
 #include "normalshop/core/image_view.h"
+#include "normalshop/core/pixel_memory.h"
 #include "normalshop/core/rect.h"
 #include "normalshop/core/vec.h"
 
@@ -43,7 +43,7 @@ class Image {
     assert(width >= 0 && height >= 0);
     const std::size_t needed = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (needed > capacity_) {
-      data_.reset(static_cast<T*>(::operator new (needed * sizeof(T), std::align_val_t{64})));
+      data_.reset(static_cast<T*>(allocate_pixels(needed * sizeof(T))));
       capacity_ = needed;
     }
     width_ = width;
@@ -72,7 +72,7 @@ class Image {
 
  private:
   struct Free {
-    void operator()(T* p) const { ::operator delete (p, std::align_val_t{64}); }
+    void operator()(T* p) const { free_pixels(p); }
   };
   void swap(Image& other) noexcept {
     std::swap(data_, other.data_);

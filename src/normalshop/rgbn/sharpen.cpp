@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "normalshop/core/error.h"
-#include "normalshop/core/parallel.h"
-#include "normalshop/rgbn/smooth.h"
+#include "normalshop/rgbn/detail/filter_rows.h"
+#include "normalshop/rgbn/detail/gaussian.h"
+#include "normalshop/rgbn/detail/rows.h"
 
 namespace normalshop {
 
@@ -21,45 +22,33 @@ void check(const SharpenOptions& o) {
   }
 }
 
-/// A window of the image around `area`, so that only that part needs memory.
-template <class T>
-ImageView<T> window(ImageView<T> image, const Rect& area, int stride) {
-  if (image.empty()) return {};
-  return {image.row(area.y0) + area.x0, area.width(), area.height(), stride};
-}
-
 }  // namespace
 
 Rect sharpen(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
-             const SharpenOptions& options) {
+             const SharpenOptions& options, Border border) {
   check(options);
   assert(source.rect() == target.rect());
   region = intersect(region, target.rect());
   if (region.empty()) return {};
-  const Rect area = intersect(grow(region, reach(options)), source.rect());
-  const auto stride = [](const auto& image) {
-    return image.height() > 1 ? static_cast<int>(image.row(1) - image.row(0)) : image.width();
-  };
-  const SlopeView near = window(source, area, stride(source));
-  const MaskView valid = window(validity, area, validity.empty() ? 0 : stride(validity));
-  const Rect inner = {region.x0 - area.x0, region.y0 - area.y0, region.x1 - area.x0,
-                      region.y1 - area.y0};
-  SlopeImage low(area.width(), area.height());
-  SlopeImage high(area.width(), area.height());
-  smooth(near, valid, low, inner, {.sigma = options.sigma});
-  smooth(near, valid, high, inner, {.sigma = options.noise_sigma});
-  parallel_for(static_cast<std::size_t>(inner.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = inner.y0 + static_cast<int>(a); y < inner.y0 + static_cast<int>(b); ++y) {
-      for (int x = inner.x0; x < inner.x1; ++x) {
-        const float weight = valid.empty() ? 1.0F : valid(x, y);
-        const Vec2f change = options.amount * (high(x, y) - low(x, y));
-        target(x + area.x0, y + area.y0) = weight > 0.0F ? Vec2f(near(x, y) + change) : near(x, y);
-      }
-    }
+  if (options.sigma == 0.0F || options.amount == 0.0F) {
+    copy_rows(source, {}, target, region);
+    return region;
+  }
+  const SlopeImage low = gaussian(source, validity, region, options.sigma, border);
+  SlopeImage high;
+  if (options.noise_sigma > 0.0F) {
+    high = gaussian(source, validity, region, options.noise_sigma, border);
+  }
+  for_pixels(region, [&](int x, int y) {
+    const Vec2f own = source(x, y);
+    const int i = x - region.x0;
+    const int j = y - region.y0;
+    const Vec2f details = (high.empty() ? own : high(i, j)) - low(i, j);
+    target(x, y) = mask_at(validity, x, y) > 0.0F ? Vec2f(own + options.amount * details) : own;
   });
   return region;
 }
 
-int reach(const SharpenOptions& options) { return reach(SmoothOptions{.sigma = options.sigma}); }
+int reach(const SharpenOptions& options) { return gaussian_reach(options.sigma); }
 
 }  // namespace normalshop

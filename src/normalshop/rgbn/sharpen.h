@@ -2,6 +2,7 @@
 
 #include <tuple>
 
+#include "normalshop/core/border.h"
 #include "normalshop/core/image.h"
 #include "normalshop/core/options.h"
 
@@ -30,7 +31,7 @@ struct SharpenOptions {
 /// Sizes, validity, borders and aliasing as for smooth(); pixels with validity 0 keep their slopes.
 /// Throws InvalidInput unless 0 <= noise_sigma < sigma (or both are 0).
 Rect sharpen(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
-             const SharpenOptions& options = {});
+             const SharpenOptions& options = {}, Border border = Border::Clamp);
 /// Pixels read beyond the region.
 int reach(const SharpenOptions& options);
 

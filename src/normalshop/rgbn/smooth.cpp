@@ -1,217 +1,168 @@
 #include "normalshop/rgbn/smooth.h"
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "normalshop/core/error.h"
-#include "normalshop/core/parallel.h"
-#include "normalshop/rgbn/detail/gaussian_kernels.h"
+#include "normalshop/rgbn/detail/filter_rows.h"
+#include "normalshop/rgbn/detail/gaussian.h"
+#include "normalshop/rgbn/detail/lattice.h"
+#include "normalshop/rgbn/detail/rows.h"
+#include "normalshop/rgbn/detail/tile_filter.h"
 
 namespace normalshop {
 
 namespace {
 
-/// Up to here the direct filter is as exact as it is fast (measured in benchmarks/bench_rgbn.cpp).
-constexpr double fir_limit = 8.0;
-/// Less than this weight of valid pixels in reach counts as none.
-constexpr float least_weight = 1e-4F;
+/// Up to here the direct filter is the fastest: among pixels, and among the few points of a
+/// lattice, where it is nearly free.
+constexpr double pixels_limit = 4.0;
+constexpr double points_limit = 16.0;
 
-/// Gaussian along one panel, whatever the filter.
-class LineFilter {
- public:
-  explicit LineFilter(double sigma) {
-    direct_ = sigma <= fir_limit;
-    if (direct_) {
-      fir_ = fir_kernel(sigma);
-    } else {
-      recursive_ = recursive_kernel(sigma);
-    }
-  }
-  /// Samples that the panel must hold before the first and after the last one.
-  int padding() const { return direct_ ? static_cast<int>(fir_.weights.size()) : 0; }
-  /// `in` starts with the padding.
-  void run(const float* in, int count, float* out) const {
-    if (direct_) {
-      fir_panel(in + padding() * panel_lanes, count, fir_, out);
-    } else {
-      recursive_panel(in, count, recursive_, out);
-    }
-  }
-
- private:
-  bool direct_ = true;
-  FirKernel fir_;
-  RecursiveKernel recursive_{};
+/// The Gaussian along one axis, or with bend != 0 bend times its second derivative, of which the
+/// filter takes the sum over both axes.
+struct Axis {
+  double sigma;
+  double bend = 0.0;
+};
+struct Axes {
+  Axis x;
+  Axis y;
 };
 
-/// A range of samples along a line of `size` samples that continues its ends.
+Lattice lattice_of(const Axis& axis, double limit) {
+  return {axis.sigma,
+          axis.sigma <= limit ? 1 : std::clamp(static_cast<int>(axis.sigma / 1.6), 2, 8)};
+}
+
+/// What is left to do between the points of a lattice.
+Axis rest_of(const Axis& axis, const Lattice& lattice) {
+  return {lattice.rest, axis.bend / (lattice.step * lattice.step)};
+}
+
+struct AxisWeights {
+  explicit AxisWeights(const Axis& axis) : smoothing(gaussian_weights(axis.sigma)) {
+    if (axis.bend == 0.0) return;
+    bending = bending_weights(axis.sigma);
+    for (double& w : bending) w *= axis.bend;
+  }
+  int radius() const { return static_cast<int>(std::max(smoothing.size(), bending.size())); }
+  std::vector<double> smoothing;
+  std::vector<double> bending;
+};
+
+int axis_reach(const Axis& axis, double limit) {
+  if (axis.sigma <= limit) return AxisWeights(axis).radius();
+  const Lattice lattice = lattice_of(axis, limit);
+  const int points = axis_reach(rest_of(axis, lattice), points_limit) + lattice.after;
+  return points * lattice.step + lattice.radius();
+}
+
+/// The sums of one axis over numbers that are `step` apart.
+struct AxisSums {
+  AxisSums(const AxisWeights& weights, std::ptrdiff_t step)
+      : smoothing(line_pairs(weights.smoothing, step)),
+        bending(line_pairs(weights.bending, step)) {}
+  WeightedPairs smoothing;
+  WeightedPairs bending;
+};
+
+/// Finite filters down and along tiles.
+template <class Rows, class Store>
+void filter_direct(const Rows& rows, const Rect& region, const Axes& axes, const Store& store) {
+  constexpr std::ptrdiff_t channels = Rows::channels;
+  const AxisWeights x(axes.x);
+  const AxisWeights y(axes.y);
+  const TileSize size(region, x.radius(), y.radius(), Rows::channels);
+  const AxisSums along(x, channels);
+  const AxisSums down(y, size.stride());
+  const std::ptrdiff_t side = x.radius() * channels;
+  const auto filter_row = [&](const Tile& tile, float* scratch, float* out) {
+    const std::ptrdiff_t wide = tile.count + 2 * side;
+    pairs_around(tile.at - side, wide, down.smoothing, scratch);
+    if (x.bending.empty()) return pairs_around(scratch + side, tile.count, along.smoothing, out);
+    float* bent_down = scratch + wide;
+    float* bent_along = bent_down + wide;
+    pairs_only(tile.at - side, wide, down.bending, bent_down);
+    pairs_only(scratch + side, tile.count, along.bending, bent_along);
+    pairs_around(bent_down + side, tile.count, along.smoothing, out);
+    for (std::ptrdiff_t i = 0; i < tile.count; ++i) out[i] += bent_along[i];
+  };
+  filter_tiles(rows, region, size, filter_row, store);
+}
+
+/// The points that there are along an axis of n pixels. Beyond those of Clamp all are alike.
 struct Range {
   int begin;
   int end;
-  int clamped(int i, int size) const { return std::clamp(begin + i, 0, size - 1); }
-  int count() const { return end - begin; }
 };
-
-/// Buffers of one task.
-struct Panels {
-  Panels(int in_samples, int out_samples)
-      : in(panel_lanes, in_samples, 0.0F), out(panel_lanes, out_samples) {}
-  Image<float> in;
-  Image<float> out;
-};
-
-/// Where the numbers of C channels come from: load(x, y, float[C]) or a whole row.
-template <int C>
-constexpr int panel_pixels = panel_lanes / C;
-
-/// Runs body(panel index, panels) over all panels in parallel, reusing buffers within a task.
-template <class Body>
-void for_each_panel(int panels, int in_samples, int out_samples, const Body& body) {
-  parallel_for(static_cast<std::size_t>(panels), 1, [&](std::size_t a, std::size_t b) {
-    Panels buffers(in_samples, out_samples);
-    for (std::size_t i = a; i < b; ++i) body(static_cast<int>(i), buffers);
-  });
-}
-
-/// The part of a line that is held: the region with its reach, within the image.
-Range with_reach(int begin, int end, int margin, int size) {
-  return {std::max(0, begin - margin), std::min(size, end + margin)};
-}
-
-/// Filters down the columns [columns) of a source and writes the rows [region.y0, region.y1) of all
-/// of them into `target`, whose origin is (columns.begin, region.y0). load(x, y, out) gives a
-/// pixel.
-template <int C, class Load>
-void filter_columns(const Load& load, int height, const Range& columns, const Rect& region,
-                    int margin, const LineFilter& filter, Image<float>& target) {
-  constexpr int pixels = panel_pixels<C>;
-  const Range held = with_reach(region.y0, region.y1, margin, height);
-  const int pad = filter.padding();
-  const int skip = pad > 0 ? region.y0 - pad : held.begin;
-  const int in_samples = pad > 0 ? region.height() + 2 * pad : held.count();
-  const int count = pad > 0 ? region.height() : held.count();
-  for_each_panel(
-      (columns.count() + pixels - 1) / pixels, in_samples, count, [&](int panel, Panels& buffers) {
-        const int x0 = columns.begin + panel * pixels;
-        const int x1 = std::min(x0 + pixels, columns.end);
-        for (int i = 0; i < in_samples; ++i) {
-          float* to = buffers.in.row(i);
-          load(x0, x1, std::clamp(skip + i, 0, height - 1), to);
-        }
-        filter.run(buffers.in.data(), count, buffers.out.data());
-        for (int y = region.y0; y < region.y1; ++y) {
-          const float* from = buffers.out.row(pad > 0 ? y - region.y0 : y - skip);
-          std::copy_n(from, (x1 - x0) * C, target.row(y - region.y0) + (x0 - columns.begin) * C);
-        }
-      });
-}
-
-/// Filters along the rows of `source` (origin (columns.begin, region.y0), `width` the whole
-/// image's) and hands every pixel of the region to store(x, y, const float[C]).
-template <int C, class Store>
-void filter_rows(const Image<float>& source, const Range& columns, const Rect& region,
-                 const LineFilter& filter, const Store& store) {
-  constexpr int pixels = panel_pixels<C>;
-  const int pad = filter.padding();
-  const int first = pad > 0 ? region.x0 - pad : columns.begin;
-  const int in_samples = pad > 0 ? region.width() + 2 * pad : columns.count();
-  const int count = pad > 0 ? region.width() : columns.count();
-  for_each_panel((region.height() + pixels - 1) / pixels, in_samples, count,
-                 [&](int panel, Panels& buffers) {
-                   const int y0 = panel * pixels;
-                   const int rows = std::min(pixels, region.height() - y0);
-                   for (int r = 0; r < rows; ++r) {
-                     const float* from = source.row(y0 + r);
-                     float* to = buffers.in.data() + r * C;
-                     for (int i = 0; i < in_samples; ++i, to += panel_lanes) {
-                       const int x = std::clamp(first + i - columns.begin, 0, columns.count() - 1);
-                       for (int c = 0; c < C; ++c) to[c] = from[x * C + c];
-                     }
-                   }
-                   filter.run(buffers.in.data(), count, buffers.out.data());
-                   for (int r = 0; r < rows; ++r) {
-                     const float* from =
-                         buffers.out.data() + r * C +
-                         static_cast<std::ptrdiff_t>(pad > 0 ? 0 : region.x0 - first) * panel_lanes;
-                     for (int x = region.x0; x < region.x1; ++x, from += panel_lanes) {
-                       store(x, region.y0 + y0 + r, from);
-                     }
-                   }
-                 });
-}
-
-template <int C, class Load, class Store>
-void filter(const Load& load, const Rect& image, const Rect& region, const SmoothOptions& options,
-            const Store& store) {
-  const LineFilter line(static_cast<double>(options.sigma));
-  const int margin = reach(options);
-  const Range columns = with_reach(region.x0, region.x1, margin, image.width());
-  Image<float> between(columns.count() * C, region.height());
-  filter_columns<C>(load, image.height(), columns, region, margin, line, between);
-  filter_rows<C>(between, columns, region, line, store);
-}
-
-template <class T>
-constexpr int channels_of = static_cast<int>(sizeof(T) / sizeof(float));
-
-template <class T>
-const float* numbers(const T* pixel) {
-  if constexpr (channels_of<T> == 1) {
-    return pixel;
-  } else {
-    return pixel->data();
+Range all_points(const Lattice& lattice, int n, int reach, Border border) {
+  const int radius = lattice.radius();
+  if (border == Border::Clamp) {
+    return {lattice.point_of(-radius), lattice.point_of(n - 1 + radius + lattice.step - 1) + 1};
   }
+  return {lattice.point_of(0) - lattice.before - reach,
+          lattice.point_of(n - 1) + lattice.after + reach + 1};
 }
 
-template <class T>
-void set(T& pixel, const float* from) {
-  if constexpr (channels_of<T> == 1) {
-    pixel = *from;
-  } else {
-    pixel = Eigen::Map<const T>(from);
+template <class Rows, class Store>
+void filter_axes(const Rows& rows, const Rect& region, const Axes& axes, double limit,
+                 const Store& store) {
+  if (std::max(axes.x.sigma, axes.y.sigma) <= limit) {
+    return filter_direct(rows, region, axes, store);
   }
+  using Pixel = Numbers<Rows::channels>;
+  const Lattices lattices{lattice_of(axes.x, limit), lattice_of(axes.y, limit)};
+  const Axes rest{rest_of(axes.x, lattices.x), rest_of(axes.y, lattices.y)};
+  const int reach_x = axis_reach(rest.x, points_limit);
+  const int reach_y = axis_reach(rest.y, points_limit);
+  const Range across = all_points(lattices.x, rows.width(), reach_x, rows.border());
+  const Range down = all_points(lattices.y, rows.height(), reach_y, rows.border());
+  const auto from_first = [&](const Rect& r) {
+    return Rect{r.x0 - across.begin, r.y0 - down.begin, r.x1 - across.begin, r.y1 - down.begin};
+  };
+  const Rect wanted = lattices.points_for(region);
+  const Rect held = intersect(
+      {wanted.x0 - reach_x, wanted.y0 - reach_y, wanted.x1 + reach_x, wanted.y1 + reach_y},
+      {across.begin, down.begin, across.end, down.end});
+  const Image<Pixel> points = take_points(rows, lattices, held);
+  const ExtendedRows<Pixel, false> point_rows(points, {}, Border::Clamp, from_first(held),
+                                              across.end - across.begin, down.end - down.begin);
+  Image<Pixel> filtered(wanted.width(), wanted.height());
+  const Rect inner = from_first(wanted);
+  filter_axes(point_rows, inner, rest, points_limit,
+              PlainStore<Pixel>{{filtered, {inner.x0, inner.y0}}});
+  join_points<Rows::channels>(filtered, lattices, region, store);
+}
+
+/// What repeats is flat after a Gaussian as wide as its period (to 3e-9), so that wider ones give
+/// the same.
+double useful_sigma(float sigma, int n, Border border) {
+  const auto wide = static_cast<double>(sigma);
+  if (border == Border::Clamp) return wide;
+  return std::min(wide, border == Border::Wrap ? 1.0 * n : 2.0 * n);
+}
+
+Axes gaussian_axes(float sigma, const Rect& image, Border border) {
+  return {{useful_sigma(sigma, image.width(), border)},
+          {useful_sigma(sigma, image.height(), border)}};
 }
 
 template <class T>
-void smooth_all(ImageView<T> source, ImageSpan<T> target, const Rect& region,
-                const SmoothOptions& options) {
-  constexpr int C = channels_of<T>;
-  filter<C>([&](int x0, int x1, int y,
-                float* to) { std::copy_n(numbers(source.row(y) + x0), (x1 - x0) * C, to); },
-            source.rect(), region, options,
-            [&](int x, int y, const float* from) { set(target(x, y), from); });
-}
-
-/// Normalised convolution: filters validity * source and validity.
-template <class T>
-void smooth_valid(ImageView<T> source, MaskView validity, ImageSpan<T> target, const Rect& region,
-                  const SmoothOptions& options) {
-  constexpr int C = channels_of<T>;
-  filter<C + 1>(
-      [&](int x0, int x1, int y, float* to) {
-        for (int x = x0; x < x1; ++x) {
-          const float weight = validity(x, y);
-          const float* from = numbers(source.row(y) + x);
-          for (int c = 0; c < C; ++c) *to++ = weight > 0.0F ? weight * from[c] : 0.0F;
-          *to++ = weight;
-        }
-      },
-      source.rect(), region, options,
-      [&](int x, int y, const float* from) {
-        if (!(from[C] > least_weight)) {
-          target(x, y) = source(x, y);
-          return;
-        }
-        std::array<float, C> out;
-        for (int c = 0; c < C; ++c) out[static_cast<std::size_t>(c)] = from[c] / from[C];
-        set(target(x, y), out.data());
-      });
+void smooth_into(ImageView<T> source, MaskView validity, const Rect& region, float sigma,
+                 Border border, const Output<T>& output) {
+  const Axes axes = gaussian_axes(sigma, source.rect(), border);
+  if (validity.empty()) {
+    filter_axes(ExtendedRows<T, false>(source, validity, border), region, axes, pixels_limit,
+                PlainStore<T>{output});
+  } else {
+    filter_axes(ExtendedRows<T, true>(source, validity, border), region, axes, pixels_limit,
+                ValidStore<T>{output, source});
+  }
 }
 
 template <class T>
 Rect smooth_any(ImageView<T> source, MaskView validity, ImageSpan<T> target, Rect region,
-                const SmoothOptions& options) {
+                const SmoothOptions& options, Border border) {
   if (!(options.sigma >= 0.0F) || !std::isfinite(options.sigma)) {
     throw InvalidInput("smooth: sigma must be a number of at least 0");
   }
@@ -219,36 +170,72 @@ Rect smooth_any(ImageView<T> source, MaskView validity, ImageSpan<T> target, Rec
   region = intersect(region, target.rect());
   if (region.empty()) return {};
   if (options.sigma == 0.0F) {
-    for (int y = region.y0; y < region.y1; ++y) {
-      std::copy(source.row(y) + region.x0, source.row(y) + region.x1, target.row(y) + region.x0);
-    }
-  } else if (validity.empty()) {
-    smooth_all(source, target, region, options);
-  } else {
-    smooth_valid(source, validity, target, region, options);
+    copy_rows(source, {}, target, region);
+    return region;
   }
+  write_apart<T>(target, region, share_memory(target, source) || share_memory(target, validity),
+                 [&](const Output<T>& output) {
+                   smooth_into(source, validity, region, options.sigma, border, output);
+                 });
   return region;
 }
 
 }  // namespace
 
+SlopeImage gaussian(SlopeView source, MaskView validity, const Rect& region, float sigma,
+                    Border border) {
+  SlopeImage result(region.width(), region.height());
+  smooth_into(source, validity, region, sigma, border,
+              Output<Vec2f>{result, {region.x0, region.y0}});
+  return result;
+}
+
+SlopeImage laplacian(SlopeView source, MaskView validity, const Rect& region, float sigma,
+                     Border border) {
+  Axes axes = gaussian_axes(sigma, source.rect(), border);
+  for (Axis* axis : {&axes.x, &axes.y}) axis->bend = -axis->sigma * axis->sigma;
+  SlopeImage result(region.width(), region.height());
+  const Origin origin{region.x0, region.y0};
+  if (validity.empty()) {
+    filter_axes(ExtendedRows<Vec2f, false>(source, validity, border), region, axes, pixels_limit,
+                PlainStore<Vec2f>{{result, origin}});
+    return result;
+  }
+  using Weighed = Numbers<3>;
+  Image<Weighed> bent(region.width(), region.height());
+  filter_axes(ExtendedRows<Vec2f, true>(source, validity, border), region, axes, pixels_limit,
+              PlainStore<Weighed>{{bent, origin}});
+  const SlopeImage mean = gaussian(source, validity, region, sigma, border);
+  for_pixels(result.rect(), [&](int x, int y) {
+    const auto& [bent_x, bent_y, weight] = bent(x, y);
+    result(x, y) = Vec2f(bent_x, bent_y) - weight * mean(x, y);
+  });
+  return result;
+}
+
+int gaussian_reach(float sigma) {
+  return sigma > 0.0F ? axis_reach({static_cast<double>(sigma)}, pixels_limit) : 0;
+}
+
+int laplacian_reach(float sigma) {
+  return sigma > 0.0F ? axis_reach({static_cast<double>(sigma), 1.0}, pixels_limit) : 0;
+}
+
 Rect smooth(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
-            const SmoothOptions& options) {
-  return smooth_any<Vec2f>(source, validity, target, region, options);
+            const SmoothOptions& options, Border border) {
+  return smooth_any<Vec2f>(source, validity, target, region, options, border);
 }
 
 Rect smooth(MaskView source, MaskView validity, MaskSpan target, Rect region,
-            const SmoothOptions& options) {
-  return smooth_any<float>(source, validity, target, region, options);
+            const SmoothOptions& options, Border border) {
+  return smooth_any<float>(source, validity, target, region, options, border);
 }
 
 Rect smooth(ColorView source, MaskView validity, ColorSpan target, Rect region,
-            const SmoothOptions& options) {
-  return smooth_any<Vec3f>(source, validity, target, region, options);
+            const SmoothOptions& options, Border border) {
+  return smooth_any<Vec3f>(source, validity, target, region, options, border);
 }
 
-int reach(const SmoothOptions& options) {
-  return static_cast<int>(std::ceil(4.0 * static_cast<double>(options.sigma)));
-}
+int reach(const SmoothOptions& options) { return gaussian_reach(options.sigma); }
 
 }  // namespace normalshop
