@@ -129,8 +129,8 @@ TEST(AreaOperators, ProjectLeavesASurfaceAsItIs) {
   }
 }
 
-/// Models of `combine` on a picture: on the plane they show the image alone. (UDN does not: it keeps
-/// the z of what is below.)
+/// Models of `combine` on a picture: on the plane they show the image alone. (UDN does not: it
+/// keeps the z of what is below.)
 TEST(AreaOperators, CombineByEveryModel) {
   for (const std::string model : {"linear", "rotation", "reoriented", "whiteout"}) {
     ImageDocument document = picture(constant({0.0F, 0.0F}));

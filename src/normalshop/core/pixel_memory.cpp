@@ -1,9 +1,9 @@
 #include "normalshop/core/pixel_memory.h"
 
-#include <sys/mman.h>
-
 #include <cstdlib>
 #include <new>
+
+#include <sys/mman.h>
 
 namespace normalshop {
 

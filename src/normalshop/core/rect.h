@@ -33,8 +33,6 @@ inline Rect grow(const Rect& r, int pixels) {
   return {r.x0 - pixels, r.y0 - pixels, r.x1 + pixels, r.y1 + pixels};
 }
 
-inline Rect shift(const Rect& r, int x, int y) {
-  return {r.x0 + x, r.y0 + y, r.x1 + x, r.y1 + y};
-}
+inline Rect shift(const Rect& r, int x, int y) { return {r.x0 + x, r.y0 + y, r.x1 + x, r.y1 + y}; }
 
 }  // namespace normalshop

@@ -92,8 +92,8 @@ struct LeastArea {
 };
 
 /// The smallest det DW between these nodes, certain within 1e-4 (minus infinity where W is no
-/// number): bounds of the Bernstein coefficients of det DW in every cell, cut up where they leave it
-/// open.
+/// number): bounds of the Bernstein coefficients of det DW in every cell, cut up where they leave
+/// it open.
 LeastArea least_area(const WarpLattice& lattice, const Rect& nodes);
 LeastArea least_area(const WarpLattice& lattice);
 
