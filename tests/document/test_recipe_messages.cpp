@@ -46,12 +46,12 @@ TEST(RecipeMessages, AnEdit) {
   EXPECT_EQ(message_of_edit("7"),
             "r.json: edits[0] must be an object with fields, not the number 7");
   EXPECT_EQ(message_of_edit(R"({"view": "front"})"),
-            "r.json: edits[0].operator is missing; it must be pen, stamp, text, combine, smooth or "
-            "sharpen");
+            "r.json: edits[0].operator is missing; it must be pen, stamp, text, combine, smooth, "
+            "sharpen or filter");
   EXPECT_EQ(
       message_of_edit(R"({"operator": "paint", "view": "front"})"),
-      "r.json: edits[0].operator must be pen, stamp, text, combine, smooth or sharpen, not the "
-      "text \"paint\"");
+      "r.json: edits[0].operator must be pen, stamp, text, combine, smooth, sharpen or filter, not "
+      "the text \"paint\"");
   EXPECT_EQ(message_of_edit(R"({"operator": "smooth", "options": {"sigma": 1}})"),
             "r.json: edits[0].view is missing; it must be front, back, left, right, top or bottom, "
             "or an object with \"direction\" or \"facing\"");
@@ -137,6 +137,14 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "\"brush\"");
   EXPECT_EQ(other("sharpen", R"({"sigma": 1, "noise_sigma": 1})"),
             "r.json: edits[0].options.noise_sigma must be a number below sigma, not the number 1");
+  EXPECT_EQ(other("filter", R"({"kind": "high_pass"})"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000 for "
+            "all kinds but \"scale\"");
+  EXPECT_EQ(other("filter", R"({"kind": "edge_enhance", "sigma": 1, "noise_sigma": 1})"),
+            "r.json: edits[0].options.noise_sigma must be a number below sigma, not the number 1");
+  EXPECT_EQ(other("filter", R"({"kind": "median", "sigma": 1})"),
+            "r.json: edits[0].options.kind must be gaussian, high_pass, band_pass, "
+            "laplacian_of_gaussian, unsharp, edge_enhance or scale, not the text \"median\"");
 }
 
 TEST(RecipeMessages, Strokes) {

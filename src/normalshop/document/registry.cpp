@@ -4,9 +4,9 @@
 namespace normalshop {
 
 const std::vector<OperatorType>& operator_types() {
-  static const std::vector<OperatorType> types{pen_operator(),    stamp_operator(),
-                                               text_operator(),   combine_operator(),
-                                               smooth_operator(), sharpen_operator()};
+  static const std::vector<OperatorType> types{
+      pen_operator(),    stamp_operator(),   text_operator(),  combine_operator(),
+      smooth_operator(), sharpen_operator(), filter_operator()};
   return types;
 }
 

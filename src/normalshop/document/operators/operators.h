@@ -11,5 +11,6 @@ OperatorType text_operator();
 OperatorType combine_operator();
 OperatorType smooth_operator();
 OperatorType sharpen_operator();
+OperatorType filter_operator();
 
 }  // namespace normalshop

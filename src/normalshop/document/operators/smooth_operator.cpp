@@ -14,6 +14,7 @@ struct SmoothFilter {
   static void limit(Options& options, float largest) {
     options.sigma = std::min(options.sigma, largest);
   }
+  static float reach(const Options& options) { return 4.0F * options.sigma; }
   static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
                     const Options& options) {
     smooth(source, validity, target, region, options);
