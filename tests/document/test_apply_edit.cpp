@@ -110,6 +110,9 @@ TEST(ApplyEdit, EditsThatChangeNothingLeaveEveryCode) {
           R"("operator": "smooth", "options": {"sigma": 0})",
           R"("operator": "smooth", "options": {"sigma": 0}, "mode": "base")",
           R"("operator": "sharpen", "options": {"sigma": 0.1, "amount": 0})",
+          R"("operator": "filter", "options": {"sigma": 0})",
+          R"("operator": "filter", "options": {"kind": "scale"})",
+          R"("operator": "filter", "options": {"kind": "unsharp", "sigma": 0.1, "amount": 0})",
           R"("operator": "pen", "options": {"width": 0.2, "height": 0}, "strokes": [[[0, 0]]])",
           R"("operator": "pen", "options": {"width": 0, "height": 1}, "strokes": [[[0, 0]]])",
           R"("operator": "combine", "options": {"image": "cone.png", "relief": 0})",
@@ -197,6 +200,55 @@ TEST(ApplyEdit, SharpeningGrowsTheDetails) {
   d.apply(
       edit(R"("operator": "sharpen", "view": "front", "options": {"sigma": 0.05, "amount": 1})"));
   EXPECT_NEAR(spread(map_of(d), {32, 32, 96, 96}), 2.0 * before, 0.3 * before);
+}
+
+/// A plane with the slopes (0, shape) and a fine wave of them along x.
+NormalMap wave_on_slope(float shape) {
+  RawImage codes(256, 256, 3, CodeType::F32);
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      const float wave = 0.3F * std::cos(6.2831853F * static_cast<float>(x) / 16.0F);
+      const Vec3f n = Vec3f(-wave, -shape, 1.0F).normalized();
+      std::copy_n(n.data(), 3, codes.row<float>(y) + static_cast<std::ptrdiff_t>(3 * x));
+    }
+  }
+  return NormalMap(std::move(codes), {.signed_float = true});
+}
+
+// Far from the rim a wave's slopes are multiplied by the filter's response and the shape's by that
+// of a constant; 1/16 of the plane's width is the wave's length times 1/16.
+TEST(ApplyEdit, FiltersHaveTheirResponses) {
+  struct Case {
+    std::string options;
+    double wave;
+    double shape;
+  };
+  constexpr double length = 16.0 / 256.0;
+  const auto gauss = [](double sigma) {
+    return std::exp(-0.5 * std::pow(6.283185307 * sigma / length, 2.0));
+  };
+  const double bend = std::pow(6.283185307 * 0.015 / length, 2.0) * gauss(0.015);
+  for (const Case& c : {
+           Case{R"("sigma": 0.01)", gauss(0.01), 1.0},
+           Case{R"("kind": "high_pass", "sigma": 0.02, "amount": 2)", 2.0 - 2.0 * gauss(0.02), 0.0},
+           Case{R"("kind": "band_pass", "sigma": 0.02, "noise_sigma": 0.01)",
+                gauss(0.01) - gauss(0.02), 0.0},
+           Case{R"("kind": "laplacian_of_gaussian", "sigma": 0.015)", bend, 0.0},
+           Case{R"("kind": "unsharp", "sigma": 0.02)", 2.0 - gauss(0.02), 1.0},
+           Case{R"("kind": "edge_enhance", "sigma": 0.02, "noise_sigma": 0.01)",
+                1.0 + gauss(0.01) - gauss(0.02), 1.0},
+           Case{R"("kind": "scale", "amount": 0.5)", 0.5, 0.5},
+       }) {
+    Document d = document(plane_grid(2), wave_on_slope(0.2F));
+    d.apply(edit(R"("operator": "filter", "view": "front", "options": {)" + c.options + "}"));
+    float most = 0.0F;
+    for (int x = 112; x < 144; ++x) {
+      const double wave = 0.3 * std::cos(6.2831853 * x / 16.0) * c.wave;
+      const Vec3f expected(static_cast<float>(-wave), static_cast<float>(-0.2 * c.shape), 1.0F);
+      most = std::max(most, degrees_between(map_of(d).normal(x, 128), expected));
+    }
+    EXPECT_LT(most, 0.3F) << c.options;
+  }
 }
 
 TEST(ApplyEdit, CopiesLandOnTheirPoints) {

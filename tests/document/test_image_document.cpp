@@ -207,6 +207,32 @@ TEST(ImageDocument, TilesStayTiles) {
   }
 }
 
+/// The same for filters, which read beyond the sides.
+TEST(ImageDocument, FiltersReadAcrossTheSidesOfTiles) {
+  const NormalMap map = noise_map(64, CodeType::U16);
+  for (const std::string fields :
+       {R"("operator": "smooth", "options": {"sigma": 3})",
+        R"("operator": "smooth", "options": {"sigma": 9})",
+        R"("operator": "sharpen", "options": {"sigma": 2, "amount": 1})",
+        R"("operator": "filter", "options": {"kind": "band_pass", "sigma": 5, "noise_sigma": 1})",
+        R"("operator": "project")"}) {
+    const Edit e = edit(fields + R"(, "view": "front")");
+    ImageDocument here = picture(map, Border::Wrap);
+    ImageDocument there = picture(rolled(map, 40, 24), Border::Wrap);
+    here.apply(e);
+    there.apply(e);
+    double worst = 0.0;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const Vec3f a = here.normals().normal(x, y);
+        const Vec3f b = there.normals().normal((x + 40) % 64, (y + 24) % 64);
+        worst = std::max(worst, angle_degrees(a, b));
+      }
+    }
+    EXPECT_LT(worst, 0.02) << fields;
+  }
+}
+
 /// What lies beyond the reach of an edit does not matter, so that a small window serves.
 TEST(ImageDocument, FarPixelsDoNotMatter) {
   const Edit brush = edit(R"("operator": "smooth", "view": "front",

@@ -37,11 +37,15 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
    "strokes": [[[0, 0], [1, 1]]]},
   {"operator": "sharpen", "view": "top",
    "options": {"sigma": 0.05, "amount": 3, "noise_sigma": 0.01, "area": "inside", "feather": 0.07},
-   "strokes": [[[0, 0], [1, 1], [0, 1]]]}]})";
+   "strokes": [[[0, 0], [1, 1], [0, 1]]]},
+  {"operator": "filter", "view": "bottom",
+   "options": {"kind": "band_pass", "sigma": 0.07, "noise_sigma": 0.02, "amount": -2,
+               "area": "brush", "brush": 0.3, "hardness": 0.1},
+   "strokes": [[[0, 0], [1, 1]]]}]})";
 
 TEST(Recipe, WhatIsWrittenReadsBackTheSame) {
   const Recipe recipe = parse(full_recipe);
-  ASSERT_EQ(recipe.edits.size(), 6U);
+  ASSERT_EQ(recipe.edits.size(), 7U);
   const std::string once = to_json(to_value(recipe));
   EXPECT_EQ(to_json(to_value(parse(once))), once);
 }
@@ -50,7 +54,7 @@ TEST(Recipe, EveryFieldComesThrough) {
   const std::string text = to_json(to_value(parse(full_recipe)));
   const Value written = parse_json(text, "");
   const Value given = parse_json(full_recipe, "");
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < 7; ++i) {
     const Value& before = given.find("edits")->array()->at(i);
     const Value& after = written.find("edits")->array()->at(i);
     for (const auto& [name, value] : *before.object()) {

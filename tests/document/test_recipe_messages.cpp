@@ -140,6 +140,14 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "\"brush\"");
   EXPECT_EQ(other("sharpen", R"({"sigma": 1, "noise_sigma": 1})"),
             "r.json: edits[0].options.noise_sigma must be a number below sigma, not the number 1");
+  EXPECT_EQ(other("filter", R"({"kind": "high_pass"})"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000 for "
+            "all kinds but \"scale\"");
+  EXPECT_EQ(other("filter", R"({"kind": "edge_enhance", "sigma": 1, "noise_sigma": 1})"),
+            "r.json: edits[0].options.noise_sigma must be a number below sigma, not the number 1");
+  EXPECT_EQ(other("filter", R"({"kind": "median", "sigma": 1})"),
+            "r.json: edits[0].options.kind must be gaussian, high_pass, band_pass, "
+            "laplacian_of_gaussian, unsharp, edge_enhance or scale, not the text \"median\"");
 }
 
 TEST(RecipeMessages, Strokes) {

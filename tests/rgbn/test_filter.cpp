@@ -305,6 +305,17 @@ TEST(Filter, TheNumberOfThreadsChangesNothingNorDoesWorkingInPlace) {
   }
 }
 
+TEST(Filter, HardlyAnySigmaDoesHardlyAnything) {
+  const SlopeImage image = noise_slopes(30, 20);
+  const SlopeImage flat(30, 20, Vec2f::Zero());
+  for (const float sigma : {1e-30F, 1e-3F}) {
+    EXPECT_LT(largest_difference(filtered(image, {.sigma = sigma}), image), 1e-5F);
+    EXPECT_LT(largest_difference(
+                  filtered(image, {.kind = FilterKind::LaplacianOfGaussian, .sigma = sigma}), flat),
+              1e-4F);
+  }
+}
+
 TEST(Filter, TinyImages) {
   for (const FilterKind kind : kinds) {
     for (const Border border : {Border::Clamp, Border::Mirror, Border::Wrap}) {

@@ -132,7 +132,8 @@ std::vector<double> bending_weights(double sigma) {
   double moment = 0.0;
   for (int k = 1; k <= radius; ++k) {
     const double t = k * k / (sigma * sigma);
-    weights.push_back((t - 1.0) * std::exp(-0.5 * t));
+    // Over the factor of k = 1, which is 0 in double for the smallest sigmas.
+    weights.push_back((t - 1.0) * std::exp(-0.5 * (k * k - 1.0) / (sigma * sigma)));
     moment += k * k * weights.back();
   }
   for (double& w : weights) w /= moment;

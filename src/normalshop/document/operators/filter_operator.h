@@ -17,8 +17,8 @@ struct FilterEditOptions : Options, FilterAreaOptions {
 };
 
 /// An edit that filters the slopes in an area. `Filter` has Options, name, summary, and
-/// check(options, reader), limit(options, largest sigma in pixels) and
-/// apply(source, validity, target, region, options).
+/// check(options, reader), limit(options, largest sigma in pixels), reach(options) and
+/// apply(input, target, region, options).
 template <class Filter>
 class FilterOperator : public EditOperator {
  public:
@@ -39,7 +39,7 @@ class FilterOperator : public EditOperator {
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
     return area_extent(options_, strokes);
   }
-  float reach() const override { return 4.0F * options_.sigma; }
+  float reach() const override { return Filter::reach(options_); }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     Options scaled = scale_lengths(options_, 1.0F / input.pixel);
@@ -48,7 +48,7 @@ class FilterOperator : public EditOperator {
     Filter::limit(scaled, 4.0F * static_cast<float>(side));
     const Rect region = intersect(area_mask(scaled, input, coverage), input.region);
     if (region.empty()) return {};
-    Filter::apply(input.source, input.validity, change, region, scaled);
+    Filter::apply(input, change, region, scaled);
     keep_masked_change(input.source, coverage, change, region);
     return region;
   }

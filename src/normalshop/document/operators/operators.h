@@ -12,6 +12,7 @@ OperatorType text_operator();
 OperatorType combine_operator();
 OperatorType smooth_operator();
 OperatorType sharpen_operator();
+OperatorType filter_operator();
 OperatorType flatten_operator();
 OperatorType paint_operator();
 OperatorType rotate_operator();

@@ -21,9 +21,10 @@ struct SharpenFilter {
     options.sigma = largest;
     options.noise_sigma = std::min(options.noise_sigma, 0.5F * largest);
   }
-  static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
+  static float reach(const Options& options) { return 4.0F * options.sigma; }
+  static void apply(const OperatorInput& input, SlopeSpan target, Rect region,
                     const Options& options) {
-    sharpen(source, validity, target, region, options);
+    sharpen(input.source, input.validity, target, region, options, input.border);
   }
 };
 

@@ -14,9 +14,10 @@ struct SmoothFilter {
   static void limit(Options& options, float largest) {
     options.sigma = std::min(options.sigma, largest);
   }
-  static void apply(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
+  static float reach(const Options& options) { return 4.0F * options.sigma; }
+  static void apply(const OperatorInput& input, SlopeSpan target, Rect region,
                     const Options& options) {
-    smooth(source, validity, target, region, options);
+    smooth(input.source, input.validity, target, region, options, input.border);
   }
 };
 
