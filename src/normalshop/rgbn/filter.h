@@ -41,9 +41,10 @@ struct FilterOptions {
     return std::tuple{
         field("kind", &FilterOptions::kind,
               "Low, high or band-pass (two kinds), sharpening (two kinds), or scaling the heights"),
-        field("sigma", &FilterOptions::sigma, "length", 0.0, 1e6,
-              "Standard deviation of the Gaussian that parts shape from details; needed by all kinds "
-              "but scale; with 0 there are no details"),
+        field(
+            "sigma", &FilterOptions::sigma, "length", 0.0, 1e6,
+            "Standard deviation of the Gaussian that parts shape from details; needed by all kinds "
+            "but scale; with 0 there are no details"),
         field(
             "noise_sigma", &FilterOptions::noise_sigma, "length", 0.0, 1e6,
             "Of band_pass and edge_enhance: details smaller than this count as noise; below sigma, "
