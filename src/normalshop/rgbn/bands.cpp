@@ -27,7 +27,7 @@ Rect add_change(SlopeView source, MaskView mask, float factor, SlopeSpan target,
   if (region.empty()) return {};
   for_pixels(region, [&](int x, int y) {
     const float amount = mask.empty() ? factor : factor * mask(x, y);
-    const Vec2f own = source(x, y);
+    const Vec2f& own = source(x, y);
     target(x, y) = amount == 0.0F ? own : Vec2f(own + amount * change(x, y));
   });
   return region;
@@ -63,11 +63,11 @@ Rect split(SlopeView source, MaskView validity, SlopeSpan base, SlopeSpan detail
   if (region.empty()) return {};
   smooth(source, validity, details, region, {.sigma = options.sigma}, options.border);
   for_pixels(region, [&](int x, int y) {
-    const Vec2f own = source(x, y);
+    const Vec2f& own = source(x, y);
     const bool valid = mask_at(validity, x, y) > 0.0F;
     const Vec2f low = valid ? details(x, y) : own;
-    base(x, y) = low;
     details(x, y) = valid ? Vec2f(own - low) : Vec2f(Vec2f::Zero());
+    base(x, y) = low;  // last: it may be the source
   });
   return region;
 }
@@ -114,7 +114,7 @@ Rect equalize(SlopeView source, MaskView validity, std::span<const float> gains,
     });
   }
   for_pixels(region, [&](int x, int y) {
-    const Vec2f own = source(x, y);
+    const Vec2f& own = source(x, y);
     const bool edit = changed && mask_at(validity, x, y) > 0.0F;
     target(x, y) = edit ? Vec2f(own + change(x - region.x0, y - region.y0)) : own;
   });

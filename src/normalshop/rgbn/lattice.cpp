@@ -20,6 +20,7 @@ std::vector<float> join_weights(double place, int before, int after) {
     sum += weights.back();
   }
   std::vector<float> result;
+  result.reserve(weights.size());
   for (const double w : weights) result.push_back(static_cast<float>(w / sum));
   return result;
 }

@@ -40,7 +40,7 @@ Rect sharpen(SlopeView source, MaskView validity, SlopeSpan target, Rect region,
     high = gaussian(source, validity, region, options.noise_sigma, border);
   }
   for_pixels(region, [&](int x, int y) {
-    const Vec2f own = source(x, y);
+    const Vec2f& own = source(x, y);
     const int i = x - region.x0;
     const int j = y - region.y0;
     const Vec2f details = (high.empty() ? own : high(i, j)) - low(i, j);
