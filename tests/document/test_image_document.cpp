@@ -180,7 +180,9 @@ TEST(ImageDocument, TilesStayTiles) {
       {R"("operator": "pen", "options": {"width": 9, "height": 2})", {{25, 3}, {38, 30}}},
       {R"("operator": "text", "options": {"text": "o", "size": 20, "height": 2, "bevel": 4})",
        {{30, -29}}}};
-  for (const auto& [fields, points] : edits) {
+  for (const auto& each : edits) {
+    const std::string& fields = each.first;
+    const std::vector<Vec2f>& points = each.second;
     const auto at = [&](const Vec2f& by) {
       std::string text = fields + R"(, "view": "front", "strokes": [[)";
       for (std::size_t i = 0; i < points.size(); ++i) {
