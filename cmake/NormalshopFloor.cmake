@@ -22,7 +22,7 @@ function(normalshop_test name)
   target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main normalshop::test_compiler)
   normalshop_precompiled(test_${name} test)
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
 endfunction()
 
 # normalshop_fuzzer(NAME SOURCES ... LIBRARIES ...): the libFuzzer program fuzz_NAME. Its seeds, if
