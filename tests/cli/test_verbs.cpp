@@ -106,7 +106,8 @@ TEST_F(Verbs, SpeakJson) {
        {"info", path("square.obj"), "--json"},
        {"info", path("map.png"), "--json"},
        {"describe", "--json"},
-       {"demo", "-o", path("demo"), "--size", "256", "--json"}});
+       {"demo", "-o", path("demo"), "--size", "256", "--json"}},
+      {.time = std::chrono::minutes(10)});  // the demo's, under sanitizers
   const Value report = json_of(runs[0]);
   EXPECT_GT(number(report, "texels_changed"), 50.0);
   EXPECT_GT(number(report, "largest_change_degrees"), 5.0);
