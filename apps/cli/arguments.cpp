@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include <charconv>
 #include <filesystem>
 #include <utility>
 
@@ -36,6 +37,13 @@ std::vector<std::string> arguments(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::optional<double> read_number(std::string_view text) {
+  double number = 0.0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, number);
+  return error == std::errc() && end == last ? std::optional(number) : std::nullopt;
+}
 
 Argument& Argument::required() {
   option_->required();

@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -22,6 +24,9 @@ class WrongUse : public std::runtime_error {
   WrongUse(const std::string& flag, const std::string& what)
       : std::runtime_error(flag + ": " + what) {}
 };
+
+/// The whole text as a number; none when it is something else.
+std::optional<double> read_number(std::string_view text);
 
 /// What else is to be known about an argument just added.
 class Argument {

@@ -30,14 +30,16 @@ void print_text(const Value& report) {
 }
 
 void run_check(const CheckFlags& flags) {
-  Value report = check_image(flags.image.open());
+  const OpenImageOptions files = flags.image.open();
+  const OpenedImage opened = open_image(files);
+  const Value report = check_image(opened, files.border);
   if (flags.json) {
     std::fputs(to_json(report).c_str(), stdout);
   } else {
     print_text(report);
   }
   if (flags.picture.empty()) return;
-  const float largest = write_curl_picture(flags.image.open(), flags.largest, flags.picture);
+  const float largest = write_curl_picture(opened, files.border, flags.largest, flags.picture);
   std::fprintf(stderr, "wrote %s (dark: 0, pale: a curl of %.3g)\n", flags.picture.string().c_str(),
                static_cast<double>(largest));
 }

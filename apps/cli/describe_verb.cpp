@@ -13,12 +13,6 @@ struct DescribeFlags {
   bool json = false;
 };
 
-/// The value's JSON on one line.
-std::string line_of(const Value& value) {
-  const std::string json = to_json(value);
-  return json.substr(0, json.size() - 1);
-}
-
 std::string joined(const Value& names) {
   std::string text;
   for (const Value& name : *names.array()) text += (text.empty() ? "" : ", ") + *name.text();
@@ -31,11 +25,11 @@ std::string remarks_of(const Value& field) {
   const auto add = [&](const std::string& remark) { text += (text.empty() ? "" : "; ") + remark; };
   if (const Value* unit = field.find("unit")) add("unit: " + *unit->text());
   if (const Value* range = field.find("range")) {
-    add(line_of(range->array()->front()) + " to " + line_of(range->array()->back()));
+    add(to_line(range->array()->front()) + " to " + to_line(range->array()->back()));
   }
   if (const Value* names = field.find("names")) add("one of " + joined(*names));
   const Value* standard = field.find("default");
-  add(standard == nullptr ? "required" : "default " + line_of(*standard));
+  add(standard == nullptr ? "required" : "default " + to_line(*standard));
   return text;
 }
 

@@ -1,8 +1,8 @@
-#include <charconv>
+#include <algorithm>
 #include <cstdio>
-#include <memory>
 
 #include "image_flags.h"
+#include "model_flags.h"
 #include "verbs.h"
 
 #include "normalshop/core/error.h"
@@ -21,7 +21,6 @@ struct OperatorFlags {
   ImageFlags image;
   std::vector<std::string> options;  ///< in the order of the operator's fields; empty: not given
   std::vector<std::string> strokes;
-  std::string view;
   std::string details;
   float strength = 1.0F;
   ImageExport output;
@@ -30,17 +29,13 @@ struct OperatorFlags {
 
 std::string flag_of(const Value& field) { return "--" + *field.find("name")->text(); }
 
-bool read_number(std::string_view text, double& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 /// As recipes have it. What does not look like its type stays a text, which the operator refuses in
 /// its own words.
 Value option_value(const Value& field, const std::string& text) {
   const std::string& type = *field.find("type")->text();
-  double number = 0.0;
-  if ((type == "number" || type == "integer") && read_number(text, number)) return number;
+  if (type == "number" || type == "integer") {
+    if (const auto number = read_number(text)) return *number;
+  }
   if (type == "switch" && (text == "true" || text == "false")) return text == "true";
   if (type == "curve") return parse_json(text, flag_of(field));
   return text;
@@ -52,9 +47,9 @@ Value read_point(std::string_view text) {
   std::size_t from = 0;
   while (from <= text.size()) {
     const std::size_t comma = std::min(text.find(',', from), text.size());
-    double number = 0.0;
-    if (!read_number(text.substr(from, comma - from), number) || point.size() == 3) break;
-    point.emplace_back(number);
+    const auto number = read_number(text.substr(from, comma - from));
+    if (!number || point.size() == 3) break;
+    point.emplace_back(*number);
     from = comma + 1;
   }
   if (from > text.size() && point.size() >= 2) return point;
@@ -126,7 +121,7 @@ void run_operator_verb(const OperatorFlags& flags) {
   ImageExport output = flags.output;
   output.type = code_type(flags.image.bits);
   const ImageJob job = run(flags, recipe, output);
-  for (const std::string& note : job.opened.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  print_notes(job.opened.notes);
   if (flags.json) {
     std::fputs(to_json(report_value(job)).c_str(), stdout);
     return;
@@ -143,20 +138,15 @@ std::string help_of(const Value& field) {
   std::string help = *field.find("help")->text();
   std::string facts;
   const auto add = [&](const std::string& fact) { facts += (facts.empty() ? "" : ", ") + fact; };
-  const auto plain = [](const Value& value) {
-    std::string text = to_json(value);
-    text.pop_back();
-    return text;
-  };
   if (const Value* unit = field.find("unit")) {
     const std::string& name = *unit->text();
     if (name != "1") add(name == "length" ? "pixels" : name);
   }
   if (const Value* range = field.find("range")) {
-    add(plain((*range->array())[0]) + " to " + plain((*range->array())[1]));
+    add(to_line((*range->array())[0]) + " to " + to_line((*range->array())[1]));
   }
   if (const Value* standard = field.find("default")) {
-    if (standard->array() == nullptr) add("default " + plain(*standard));
+    if (standard->array() == nullptr) add("default " + to_line(*standard));
   } else {
     add("required");
   }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -88,12 +87,10 @@ Value style_options(const Value& defaults, const std::vector<std::string>& setti
       throw WrongUse("--set", "must be NAME=VALUE, not \"" + setting + "\"");
     }
     const std::string text = setting.substr(equals + 1);
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_number = error == std::errc() && end == text.data() + text.size();
+    const auto number = read_number(text);
     const std::string name = setting.substr(0, equals);
     std::erase_if(fields, [&](const auto& field) { return field.first == name; });
-    fields.emplace_back(name, is_number ? Value(number) : Value(text));
+    fields.emplace_back(name, number ? Value(*number) : Value(text));
   }
   return fields;
 }

@@ -78,9 +78,8 @@ EffectiveAngles read_effective(const FieldReader& reader) {
   if (reader.has("full")) angles.full = static_cast<float>(reader.required("full").number(0, 85));
   if (reader.has("zero")) angles.zero = static_cast<float>(reader.required("zero").number(1, 86));
   if (angles.full >= angles.zero) {
-    throw InvalidInput(
-        reader.path() + ".full must be below zero, which is " +
-        to_json(Value(angles.zero)).substr(0, to_json(Value(angles.zero)).size() - 1) + " degrees");
+    throw InvalidInput(reader.path() + ".full must be below zero, which is " +
+                       to_line(Value(angles.zero)) + " degrees");
   }
   return angles;
 }

@@ -232,10 +232,12 @@ Value parse_json(std::string_view text, std::string_view name) {
   return builder.take();
 }
 
-std::string to_json(const Value& value) {
+std::string to_json(const Value& value) { return to_line(value) + "\n"; }
+
+std::string to_line(const Value& value) {
   std::string out;
   print(value, 0, out);
-  return out + "\n";
+  return out;
 }
 
 }  // namespace normalshop

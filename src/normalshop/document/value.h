@@ -55,5 +55,7 @@ Value parse_json(std::string_view text, std::string_view name);
 /// Indented by 2; arrays of numbers on one line. Numbers print as the shortest text that reads
 /// back; numbers that are not finite as null.
 std::string to_json(const Value& value);
+/// The same without the line's end: numbers, texts and flat lists inside a sentence.
+std::string to_line(const Value& value);
 
 }  // namespace normalshop

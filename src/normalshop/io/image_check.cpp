@@ -49,12 +49,11 @@ float percentile_99(MaskView values) {
 
 }  // namespace
 
-Value check_image(const OpenImageOptions& options) {
-  const OpenedImage opened = open_image(options);
+Value check_image(const OpenedImage& opened, Border border) {
   const NormalMap& normals = opened.document.normals();
   const PictureSlopes found = slopes_of(opened.document);
   const Counts counts = count(opened.document);
-  const CurlOptions curl{options.border};
+  const CurlOptions curl{border};
   const LengthStatistics& lengths = opened.guess.lengths;
   const auto share = [&](double value) { return counts.inside > 0 ? value : 0.0; };
   return Value::Object{
@@ -73,11 +72,10 @@ Value check_image(const OpenImageOptions& options) {
        share(curl_share_of_derivatives(found.slopes, found.validity, curl))}};
 }
 
-float write_curl_picture(const OpenImageOptions& options, float maximum,
+float write_curl_picture(const OpenedImage& opened, Border border, float maximum,
                          const std::filesystem::path& file) {
-  const OpenedImage opened = open_image(options);
   const PictureSlopes found = slopes_of(opened.document);
-  const CurlOptions chosen{options.border};
+  const CurlOptions chosen{border};
   MaskImage values(found.slopes.width(), found.slopes.height());
   curl(found.slopes, found.validity, values, values.rect(), chosen);
   if (!(maximum > 0.0F)) maximum = std::max(percentile_99(values), 1e-6F);
