@@ -13,20 +13,14 @@ struct AreaEditOptions : Options, FilterAreaOptions {
   }
 };
 
-/// An edit that rewrites the slopes in an area, each pixel by what the tool makes of it and how far
-/// the area's mask says. `Tool` has Options, name, summary and
-/// apply(input, mask, target, region, options), which fills target in region.
-template <class Tool>
-class AreaOperator : public EditOperator {
+/// What all edits with an area have in common. `Options` has theirs among its fields.
+template <class Options>
+class AreaEdit : public EditOperator {
  public:
-  using Options = AreaEditOptions<typename Tool::Options>;
-
-  explicit AreaOperator(const FieldReader& options) : options_(read_options<Options>(options)) {
+  explicit AreaEdit(const FieldReader& options) : options_(read_options<Options>(options)) {
     check_brush(options_, options);
   }
-  std::string_view name() const override { return Tool::name; }
   Value options() const override { return options_value(options_); }
-  bool reads() const override { return true; }
   StrokeUse stroke_use() const override { return area_stroke_use(options_); }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
@@ -36,26 +30,44 @@ class AreaOperator : public EditOperator {
     return area_extent(options_, strokes);
   }
 
+ protected:
+  Options options_;
+};
+
+/// An edit that rewrites the slopes in an area, each pixel by what the tool makes of it and how far
+/// the area's mask says. `Tool` has Options, name, summary and
+/// apply(input, mask, target, region, options), which fills target in region.
+template <class Tool>
+class AreaOperator : public AreaEdit<AreaEditOptions<typename Tool::Options>> {
+ public:
+  using Options = AreaEditOptions<typename Tool::Options>;
+  using AreaEdit<Options>::AreaEdit;
+
+  std::string_view name() const override { return Tool::name; }
+  bool reads() const override { return true; }
+
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
-    const Options scaled = scale_lengths(options_, 1.0F / input.pixel);
+    const Options scaled = scale_lengths(this->options_, 1.0F / input.pixel);
     const Rect region = intersect(area_mask(scaled, input, coverage), input.region);
     if (region.empty()) return {};
     Tool::apply(input, coverage, change, region, scaled);
     subtract(input.source, change, region);
     return region;
   }
-
- private:
-  Options options_;
 };
+
+/// The registry's entry of an operator with an area. `Kind` has name, summary and Options.
+template <class Operator, class Kind>
+OperatorType area_operator_type() {
+  return {Kind::name, Kind::summary, area_strokes, describe_fields<typename Operator::Options>,
+          [](const FieldReader& options) -> std::unique_ptr<EditOperator> {
+            return std::make_unique<Operator>(options);
+          }};
+}
 
 template <class Tool>
 OperatorType area_type() {
-  return {Tool::name, Tool::summary, area_strokes,
-          describe_fields<typename AreaOperator<Tool>::Options>,
-          [](const FieldReader& options) -> std::unique_ptr<EditOperator> {
-            return std::make_unique<AreaOperator<Tool>>(options);
-          }};
+  return area_operator_type<AreaOperator<Tool>, Tool>();
 }
 
 }  // namespace normalshop

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "normalshop/core/parallel.h"
-#include "normalshop/document/operators/filter_area.h"
+#include "normalshop/document/operators/area_operator.h"
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/operators/placed_operator.h"
 
@@ -54,28 +54,17 @@ void for_each_pixel(const Rect& region, const Body& body) {
   });
 }
 
-class CombineOperator : public EditOperator {
+class CombineOperator : public AreaEdit<CombineEditOptions> {
  public:
-  explicit CombineOperator(const FieldReader& options)
-      : options_(read_options<CombineEditOptions>(options)) {
+  explicit CombineOperator(const FieldReader& options) : AreaEdit(options) {
     if (options_.image.empty()) options.required("image").fail("the name of a file");
     check_scales(options);
-    check_brush(options_, options);
   }
   std::string_view name() const override { return "combine"; }
-  Value options() const override { return options_value(options_); }
   void load(Assets& assets) override { image_ = assets.patch(options_.image); }
   std::string_view asset_field() const override { return "image"; }
   bool reads() const override { return options_.model != CombineModel::Linear; }
   bool reads_base() const override { return options_.model == CombineModel::Rotation; }
-  StrokeUse stroke_use() const override { return area_stroke_use(options_); }
-  void check_strokes(const std::vector<UnitStroke>& strokes,
-                     const std::string& path) const override {
-    check_area(options_, strokes, path);
-  }
-  Extent extent(const std::vector<UnitStroke>& strokes) const override {
-    return area_extent(options_, strokes);
-  }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     CombineEditOptions scaled = scale_lengths(options_, 1.0F / input.pixel);
@@ -107,7 +96,6 @@ class CombineOperator : public EditOperator {
     for_each_pixel(region, [&](int x, int y) { change(x, y) -= input.source(x, y); });
   }
 
-  CombineEditOptions options_;
   Patch image_;
 };
 
