@@ -1,7 +1,7 @@
 #include "normalshop/document/operate.h"
 
 #include "normalshop/core/error.h"
-#include "normalshop/core/parallel.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/document/surface_check.h"
 
 namespace normalshop {
@@ -20,14 +20,9 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
 
 void scale(float factor, OperatorResult& result) {
   if (factor == 1.0F) return;
-  const Rect& region = result.region;
-  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        result.change(x, y) *= factor;
-        result.coverage(x, y) *= factor;
-      }
-    }
+  for_pixels(result.region, [&](int x, int y) {
+    result.change(x, y) *= factor;
+    result.coverage(x, y) *= factor;
   });
 }
 

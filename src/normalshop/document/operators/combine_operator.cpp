@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "normalshop/core/parallel.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/document/operators/area_operator.h"
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/operators/placed_operator.h"
@@ -45,15 +45,6 @@ struct CombineEditOptions : StampOptions, FilterAreaOptions {
   }
 };
 
-template <class Body>
-void for_each_pixel(const Rect& region, const Body& body) {
-  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) body(x, y);
-    }
-  });
-}
-
 class CombineOperator : public AreaEdit<CombineEditOptions> {
  public:
   explicit CombineOperator(const FieldReader& options) : AreaEdit(options) {
@@ -74,7 +65,7 @@ class CombineOperator : public AreaEdit<CombineEditOptions> {
     if (region.empty()) return {};
     const auto lay = scaled.repeat ? stamp_repeated : stamp;
     lay(change, coverage, region, image_, input.view_center, scaled);
-    for_each_pixel(region, [&](int x, int y) {
+    for_pixels(region, [&](int x, int y) {
       // What is not linear takes the image's slopes and its weight apart.
       if (reads() && coverage(x, y) > 0.0F) change(x, y) /= coverage(x, y);
       if (!reads()) change(x, y) *= mask(x, y);
@@ -93,7 +84,7 @@ class CombineOperator : public AreaEdit<CombineEditOptions> {
     } else {
       combine(input.source, change, weight, change, region, {.model = options_.model});
     }
-    for_each_pixel(region, [&](int x, int y) { change(x, y) -= input.source(x, y); });
+    subtract(input.source, change, region);
   }
 
   Patch image_;

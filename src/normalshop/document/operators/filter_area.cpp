@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "normalshop/core/error.h"
-#include "normalshop/core/parallel.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/rgbn/pen.h"
 
 namespace normalshop {
@@ -124,22 +124,14 @@ Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, Mas
 }
 
 void subtract(SlopeView source, SlopeSpan target, Rect region) {
-  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) target(x, y) -= source(x, y);
-    }
-  });
+  for_pixels(region, [&](int x, int y) { target(x, y) -= source(x, y); });
 }
 
 void keep_masked_change(SlopeView source, MaskView mask, SlopeSpan filtered_to_change,
                         Rect region) {
-  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        Vec2f& v = filtered_to_change(x, y);
-        v = mask(x, y) * (v - source(x, y));
-      }
-    }
+  for_pixels(region, [&](int x, int y) {
+    Vec2f& v = filtered_to_change(x, y);
+    v = mask(x, y) * (v - source(x, y));
   });
 }
 

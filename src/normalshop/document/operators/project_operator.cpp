@@ -1,4 +1,4 @@
-#include "normalshop/core/parallel.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/document/operators/area_operator.h"
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/rgbn/project.h"
@@ -22,17 +22,6 @@ struct ProjectEditOptions {
   }
 };
 
-/// target = source + mask * (target - source).
-void blend(SlopeView source, MaskView mask, SlopeSpan target, const Rect& region) {
-  parallel_for(static_cast<std::size_t>(region.height()), 32, [&](std::size_t a, std::size_t b) {
-    for (int y = region.y0 + static_cast<int>(a); y < region.y0 + static_cast<int>(b); ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        target(x, y) = source(x, y) + mask(x, y) * (target(x, y) - source(x, y));
-      }
-    }
-  });
-}
-
 struct ProjectTool {
   using Options = ProjectEditOptions;
   static constexpr std::string_view name = "project";
@@ -46,7 +35,10 @@ struct ProjectTool {
     chosen.fade = std::min(options.fade, widest);
     chosen.border = region == input.source.rect() ? input.border : Border::Clamp;
     project_to_integrable(input.source, input.validity, {target, {}}, region, chosen);
-    blend(input.source, mask, target, region);
+    for_pixels(region, [&](int x, int y) {
+      const Vec2f& before = input.source(x, y);
+      target(x, y) = before + mask(x, y) * (target(x, y) - before);
+    });
   }
 };
 
