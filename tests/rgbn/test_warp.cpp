@@ -2,6 +2,7 @@
 #include <cstring>
 #include <limits>
 
+#include "support/slope_fields.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -16,18 +17,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-float noise(int x, int y, std::uint32_t seed) {
-  const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed);
-  return static_cast<float>(bits >> 8U) * 0x1p-23F - 1.0F;
-}
-
-SlopeImage noise_image(int width, int height) {
-  SlopeImage image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) image(x, y) = {noise(x, y, 1), noise(x, y, 2)};
-  }
-  return image;
-}
+using test::noise;
+using test::noise_image;
 
 ColorImage noise_colors(int width, int height) {
   ColorImage image(width, height);
