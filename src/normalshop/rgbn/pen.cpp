@@ -5,6 +5,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/sample.h"
 #include "normalshop/rgbn/detail/polyline_field.h"
+#include "normalshop/rgbn/detail/stroke_line.h"
 
 namespace normalshop {
 
@@ -21,16 +22,7 @@ void check(std::span<const Stroke> strokes, const PenOptions& o) {
       o.width < 0.0F || o.taper < 0.0F) {
     throw InvalidInput("pen: width, height and taper must be numbers, width and taper at least 0");
   }
-  for (const Stroke& stroke : strokes) {
-    if (o.closed && !stroke.empty() && stroke.size() < 3) {
-      throw InvalidInput("pen: a closed stroke needs at least 3 points");
-    }
-    for (const StrokePoint& p : stroke) {
-      if (!p.position.allFinite() || !std::isfinite(p.pressure)) {
-        throw InvalidInput("pen: a stroke's points must be numbers");
-      }
-    }
-  }
+  check_strokes("pen", strokes, o.closed);
 }
 
 int pieces(float length, float spacing) {
@@ -122,12 +114,9 @@ PolylineField make_field(std::span<const Stroke> strokes, const PenOptions& o) {
   std::vector<FieldShape> shapes;
   for (const Stroke& stroke : strokes) {
     if (stroke.empty() || o.width == 0.0F || o.height == 0.0F) continue;
-    const StrokeEnds ends = o.closed ? StrokeEnds::Closed : StrokeEnds::Open;
-    const float spacing = std::clamp(o.width / 8.0F, 1.0F, 3.0F);
-    const Stroke line = o.smooth ? smooth_stroke(stroke, spacing, ends) : stroke;
     FieldShape shape;
     shape.closed = o.closed;
-    shape.contours.push_back(vertices(line, o, fades));
+    shape.contours.push_back(vertices(line_of(stroke, o), o, fades));
     shapes.push_back(std::move(shape));
   }
   return {shapes, profile, o.height, FieldCoverage::Band};

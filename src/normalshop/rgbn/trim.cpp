@@ -6,6 +6,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/sample.h"
 #include "normalshop/rgbn/detail/polyline_field.h"
+#include "normalshop/rgbn/detail/stroke_line.h"
 
 namespace normalshop {
 
@@ -25,15 +26,7 @@ void check(std::span<const Stroke> strokes, const Patch& pattern, const TrimOpti
     throw InvalidInput(
         "trim: width and relief must be numbers, width at least 0 and border from 0 to 0.5");
   }
-  for (const Stroke& stroke : strokes) {
-    if (o.closed && !stroke.empty() && stroke.size() < 3) {
-      throw InvalidInput("trim: a closed stroke needs at least 3 points");
-    }
-    for (const StrokePoint& p : stroke) {
-      if (p.position.allFinite() && std::isfinite(p.pressure)) continue;
-      throw InvalidInput("trim: a stroke's points must be numbers");
-    }
-  }
+  check_strokes("trim", strokes, o.closed);
 }
 
 template <class T>
@@ -53,12 +46,10 @@ std::vector<FieldShape> shapes_of(std::span<const Stroke> strokes, const TrimOpt
   std::vector<FieldShape> shapes;
   for (const Stroke& stroke : strokes) {
     if (stroke.size() < 2 || o.width == 0.0F || o.relief == 0.0F) continue;
-    const StrokeEnds ends = o.closed ? StrokeEnds::Closed : StrokeEnds::Open;
-    const float spacing = std::clamp(o.width / 8.0F, 1.0F, 3.0F);
     FieldShape shape;
     shape.closed = o.closed;
     shape.contours.emplace_back();
-    for (const StrokePoint& p : o.smooth ? smooth_stroke(stroke, spacing, ends) : stroke) {
+    for (const StrokePoint& p : line_of(stroke, o)) {
       const float pressure = o.pressure ? std::clamp(p.pressure, 0.0F, 1.0F) : 1.0F;
       shape.contours.back().push_back({p.position, 0.5F * o.width * pressure, 1.0F});
     }
