@@ -5,6 +5,7 @@
 
 #include "normalshop/chart/extend.h"
 #include "normalshop/core/error.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/core/stopwatch.h"
@@ -114,11 +115,11 @@ Placed place(const Edit& edit, const ImageDocument::Images& images) {
   }
   out.place.view = moved({-half_view, half_view}, -origin);
   out.place.model = moved(out.picture, -origin);
-  if (images.border == Border::Wrap && !edit.operation->repeats_itself())
-    repeat_strokes(out.edit, out.place.model);
+  const bool tile = images.border == Border::Wrap;
+  const bool wraps = tile && edit.operation->repeats_itself();
+  if (tile && !wraps) repeat_strokes(out.edit, out.place.model);
   out.place.extent = edit.operation->extent(out.edit.strokes);
   if (out.place.extent.empty()) out.place.extent = out.place.view;
-  const bool wraps = images.border == Border::Wrap && edit.operation->repeats_itself();
   const Extent inside = intersect(out.place.extent, out.place.model);
   const bool leaves = inside.low != out.place.extent.low || inside.high != out.place.extent.high;
   out.place.extent = wraps && leaves ? out.place.model : inside;
@@ -133,31 +134,31 @@ Placed place(const Edit& edit, const ImageDocument::Images& images) {
   return out;
 }
 
-/// The slopes of the window, or of the plane without `details`, and a chart that holds nothing but
-/// the window's grid and weight.
-struct Pulled {
-  SlopeImage slopes;
-  EditingChart chart;
-};
-
-Pulled pull_window(const ImageDocument::Images& images, const Placed& placed, bool details) {
+/// A chart that holds nothing but the window's grid and weight.
+EditingChart pull_weight(const ImageDocument::Images& images, const Placed& placed) {
   const Rect& window = placed.window;
-  Pulled out;
-  out.chart.grid = placed.grid;
-  out.chart.weight.resize(window.width(), window.height());
-  out.slopes.resize(window.width(), window.height());
+  EditingChart chart;
+  chart.grid = placed.grid;
+  chart.weight.resize(window.width(), window.height());
   const bool masked = !images.mask.empty();
-  parallel_for(static_cast<std::size_t>(window.height()), 16, [&](std::size_t a, std::size_t b) {
-    for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
-      for (int x = 0; x < window.width(); ++x) {
-        const Vec3f n = images.normals.normal(window.x0 + x, window.y0 + y);
-        const float mask = masked ? images.mask(window.x0 + x, window.y0 + y) : 1.0F;
-        out.chart.weight(x, y) = n.isZero() ? 0.0F : mask;
-        out.slopes(x, y) = details ? slope_from_normal(n) : Vec2f(0.0F, 0.0F);
-      }
-    }
+  for_pixels(chart.weight.rect(), [&](int x, int y) {
+    const Vec3f n = images.normals.normal(window.x0 + x, window.y0 + y);
+    const float mask = masked ? images.mask(window.x0 + x, window.y0 + y) : 1.0F;
+    chart.weight(x, y) = n.isZero() ? 0.0F : mask;
   });
-  return out;
+  return chart;
+}
+
+/// The slopes of the window, continued where they don't count; without details those of the plane.
+SlopeImage pull_slopes(const NormalMap& normals, const Rect& window, DetailsRule details,
+                       MaskView weight) {
+  SlopeImage slopes(window.width(), window.height(), Vec2f(0.0F, 0.0F));
+  if (details == DetailsRule::Ignore) return slopes;
+  for_pixels(slopes.rect(), [&](int x, int y) {
+    slopes(x, y) = slope_from_normal(normals.normal(window.x0 + x, window.y0 + y));
+  });
+  extend(weight, slopes);
+  return slopes;
 }
 
 struct Pushed {
@@ -264,15 +265,15 @@ EditReport ImageDocument::apply(const Edit& edit) {
   const Placed placed = place(edit, images_);
   EditReport report;
   OperatorInput input = make_input(placed.edit, placed.grid, placed.place);
-  Pulled pulled = pull_window(images_, placed, edit.details == DetailsRule::Keep);
-  const MaskView weight = pulled.chart.weight;
+  const EditingChart chart = pull_weight(images_, placed);
+  const MaskView weight = chart.weight;
   // Strokes must meet the picture; those that were repeated need not.
   const auto own = input.strokes.begin() + static_cast<std::ptrdiff_t>(edit.strokes.size());
-  check_on_surface(placed.edit, {input.strokes.begin(), own}, pulled.chart, input.region,
-                   placed.picture);
+  check_on_surface(placed.edit, {input.strokes.begin(), own}, chart, input.region, placed.picture);
+  SlopeImage slopes;
   if (edit.operation->reads()) {
-    extend(weight, pulled.slopes);
-    input.source = pulled.slopes;
+    slopes = pull_slopes(images_.normals, placed.window, edit.details, weight);
+    input.source = slopes;
     input.validity = weight;
   }
   SlopeImage base;  // the plane of the picture
@@ -306,15 +307,11 @@ PictureSlopes slopes_of(const ImageDocument& document) {
   const MaskImage& mask = document.mask();
   PictureSlopes out{SlopeImage(normals.width(), normals.height()),
                     MaskImage(normals.width(), normals.height())};
-  parallel_for(static_cast<std::size_t>(normals.height()), 16, [&](std::size_t a, std::size_t b) {
-    for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
-      for (int x = 0; x < normals.width(); ++x) {
-        const Vec3f n = normals.normal(x, y);
-        const bool inside = mask.empty() || mask(x, y) > 0.0F;
-        out.slopes(x, y) = slope_from_normal(n);
-        out.validity(x, y) = inside && !n.isZero() ? 1.0F : 0.0F;
-      }
-    }
+  for_pixels(out.slopes.rect(), [&](int x, int y) {
+    const Vec3f n = normals.normal(x, y);
+    const bool inside = mask.empty() || mask(x, y) > 0.0F;
+    out.slopes(x, y) = slope_from_normal(n);
+    out.validity(x, y) = inside && !n.isZero() ? 1.0F : 0.0F;
   });
   return out;
 }
