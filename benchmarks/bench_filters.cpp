@@ -5,29 +5,17 @@
 #include <algorithm>
 #include <ctime>
 
+#include "noise_image.h"
 #include <benchmark/benchmark.h>
 #include <opencv2/imgproc.hpp>
 
 #include "normalshop/core/parallel.h"
-#include "normalshop/core/random.h"
 #include "normalshop/rgbn/smooth.h"
 
 namespace normalshop {
 namespace {
 
 constexpr int side = 4096;
-
-SlopeImage noise_image() {
-  SlopeImage image(side, side);
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1U);
-      image(x, y) = {static_cast<float>(bits & 0xffffU) * 0x1p-16F,
-                     static_cast<float>(bits >> 16U) * 0x1p-16F};
-    }
-  }
-  return image;
-}
 
 double processor_seconds() {
   timespec now{};
@@ -61,7 +49,7 @@ void blur_peer(const SlopeImage& source, SlopeImage& target, double sigma) {
 
 void gaussian(benchmark::State& state) {
   const double sigma = static_cast<double>(state.range(0)) * 0.1;
-  const SlopeImage image = noise_image();
+  const SlopeImage image = noise_image(side);
   SlopeImage ours(side, side, Vec2f::Zero());
   SlopeImage peers(side, side, Vec2f::Zero());
   Shortest our_time;

@@ -3,11 +3,11 @@
 // separable loop.
 #include <cmath>
 
+#include "noise_image.h"
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <benchmark/benchmark.h>
 
-#include "normalshop/core/random.h"
 #include "normalshop/rgbn/combine.h"
 #include "normalshop/rgbn/emboss.h"
 #include "normalshop/rgbn/heatmap.h"
@@ -22,25 +22,13 @@ namespace {
 
 constexpr int side = 1024;
 
-SlopeImage noise_image(int width, int height) {
-  SlopeImage image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1U);
-      image(x, y) = {static_cast<float>(bits & 0xffffU) * 0x1p-16F,
-                     static_cast<float>(bits >> 16U) * 0x1p-16F};
-    }
-  }
-  return image;
-}
-
 void count_pixels(benchmark::State& state, double pixels) {
   state.counters["MP/s"] =
       benchmark::Counter(pixels * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void smooth_slopes(benchmark::State& state) {
-  const SlopeImage image = noise_image(side, side);
+  const SlopeImage image = noise_image(side);
   SlopeImage out(side, side);
   const SmoothOptions options{.sigma = static_cast<float>(state.range(0))};
   for (auto _ : state) smooth(image, {}, out, image.rect(), options);
@@ -60,7 +48,7 @@ BENCHMARK(smooth_slopes)
     ->UseRealTime();
 
 void smooth_masked(benchmark::State& state) {
-  const SlopeImage image = noise_image(side, side);
+  const SlopeImage image = noise_image(side);
   const MaskImage valid(side, side, 0.5F);
   SlopeImage out(side, side);
   const SmoothOptions options{.sigma = static_cast<float>(state.range(0))};
@@ -70,7 +58,7 @@ void smooth_masked(benchmark::State& state) {
 BENCHMARK(smooth_masked)->Arg(5)->Arg(30)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void smooth_peer_plain_loop(benchmark::State& state) {
-  const SlopeImage image = noise_image(side, side);
+  const SlopeImage image = noise_image(side);
   SlopeImage between(side, side);
   SlopeImage out(side, side);
   const int radius = 4 * static_cast<int>(state.range(0));
@@ -100,7 +88,7 @@ void smooth_peer_plain_loop(benchmark::State& state) {
 BENCHMARK(smooth_peer_plain_loop)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void smooth_peer_openimageio(benchmark::State& state) {
-  SlopeImage image = noise_image(side, side);
+  SlopeImage image = noise_image(side);
   const OIIO::ImageSpec spec(side, side, 2, OIIO::TypeDesc::FLOAT);
   OIIO::ImageBuf source(spec, image.data());
   OIIO::ImageBuf between(spec);
@@ -117,7 +105,7 @@ void smooth_peer_openimageio(benchmark::State& state) {
 BENCHMARK(smooth_peer_openimageio)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void sharpen_slopes(benchmark::State& state) {
-  const SlopeImage image = noise_image(side, side);
+  const SlopeImage image = noise_image(side);
   SlopeImage out(side, side);
   const SharpenOptions options{.sigma = 5.0F, .noise_sigma = 1.0F};
   for (auto _ : state) sharpen(image, {}, out, image.rect(), options);
@@ -126,7 +114,7 @@ void sharpen_slopes(benchmark::State& state) {
 BENCHMARK(sharpen_slopes)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void combine_slopes(benchmark::State& state) {
-  SlopeImage image = noise_image(side, side);
+  SlopeImage image = noise_image(side);
   const MaskImage mask(side, side, 0.5F);
   SlopeImage out(side, side);
   for (auto _ : state) combine_linear(image, image, mask, 0.5F, out, image.rect());
@@ -171,7 +159,7 @@ BENCHMARK(pen_closed_step_2000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void stamp_patch(benchmark::State& state) {
   Patch patch;
-  patch.slopes = noise_image(512, 512);
+  patch.slopes = noise_image(512);
   StampOptions options;
   options.size = static_cast<float>(state.range(0));
   options.rotation = 30.0F;

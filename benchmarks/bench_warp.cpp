@@ -3,11 +3,11 @@
 // the rows named one_thread.
 #include <cmath>
 
+#include "noise_image.h"
 #include <benchmark/benchmark.h>
 #include <opencv2/imgproc.hpp>
 
 #include "normalshop/core/parallel.h"
-#include "normalshop/core/random.h"
 #include "normalshop/rgbn/sketch_warp.h"
 #include "normalshop/rgbn/warp_brush.h"
 
@@ -16,18 +16,6 @@ namespace {
 
 constexpr int side = 1024;
 const Rect area = {0, 0, side, side};
-
-SlopeImage noise_image() {
-  SlopeImage image(side, side);
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1U);
-      image(x, y) = {static_cast<float>(bits & 0xffffU) * 0x1p-16F,
-                     static_cast<float>(bits >> 16U) * 0x1p-16F};
-    }
-  }
-  return image;
-}
 
 void count_pixels(benchmark::State& state) {
   state.counters["MP/s"] =
@@ -56,7 +44,7 @@ WarpLattice brushed() {
 
 void warp_slopes(benchmark::State& state, const WarpLattice& lattice) {
   const ThreadLimit limit(1);
-  const SlopeImage image = noise_image();
+  const SlopeImage image = noise_image(side);
   SlopeImage out(side, side);
   for (auto _ : state) warp({image, {}, {}}, {out, {}}, area, map_of(lattice));
   count_pixels(state);
@@ -67,7 +55,7 @@ BENCHMARK(warp_one_thread)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime
 
 void warp_peer_opencv_remap(benchmark::State& state) {
   cv::setNumThreads(1);
-  SlopeImage image = noise_image();
+  SlopeImage image = noise_image(side);
   SlopeImage out(side, side);
   const WarpLattice lattice = turned();
   SlopeImage places(side, side);
