@@ -15,6 +15,11 @@ WrongUse wrong_use(const CLI::App& app, const std::string& what) {
   const auto verbs = app.get_subcommands();
   if (!verbs.empty()) {
     const std::string verb = verbs.front()->get_name();
+    // A flag written wrongly is also a missing one: CLI11 names only what is missing.
+    for (const std::string& extra : verbs.front()->remaining()) {
+      if (!extra.starts_with("-")) continue;
+      return WrongUse(verb, "there is no flag '" + extra + "'; see normalshop " + verb + " --help");
+    }
     return WrongUse(verb, what + "; see normalshop " + verb + " --help");
   }
   const auto unknown = app.remaining();

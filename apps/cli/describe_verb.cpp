@@ -10,6 +10,7 @@ namespace normalshop::cli {
 namespace {
 
 struct DescribeFlags {
+  std::string operation;  ///< empty: all
   bool json = false;
 };
 
@@ -33,8 +34,17 @@ std::string remarks_of(const Value& field) {
   return text;
 }
 
-void print_text() {
-  const Value described = describe_operators();
+Value described(const std::string& operation) {
+  const Value all = describe_operators();
+  if (operation.empty()) return all;
+  Value::Array one;
+  for (const Value& type : *all.array()) {
+    if (*type.find("operator")->text() == operation) one.push_back(type);
+  }
+  return one;
+}
+
+void print_text(const Value& described) {
   for (const Value& type : *described.array()) {
     std::printf("%s: %s.\n  strokes: %s\n", type.find("operator")->text()->c_str(),
                 type.find("summary")->text()->c_str(), type.find("strokes")->text()->c_str());
@@ -47,10 +57,11 @@ void print_text() {
 }
 
 void run_describe(const DescribeFlags& flags) {
+  const Value description = described(flags.operation);
   if (flags.json) {
-    std::fputs(to_json(describe_operators()).c_str(), stdout);
+    std::fputs(to_json(description).c_str(), stdout);
   } else {
-    print_text();
+    print_text(description);
   }
 }
 
@@ -59,6 +70,9 @@ void run_describe(const DescribeFlags& flags) {
 void add_describe_verb(CommandLine& program) {
   Verb verb = program.verb("describe", "Lists the operators and their options");
   DescribeFlags& flags = verb.runs(run_describe);
+  std::vector<std::string> names;
+  for (const OperatorType& type : operator_types()) names.emplace_back(type.name);
+  verb.takes("operator", flags.operation, "One of them (all unless given)").one_of(names);
   verb.flag("--json", flags.json, "As JSON");
 }
 

@@ -11,6 +11,7 @@
 #include "normalshop/io/edit_report.h"
 #include "normalshop/io/export_maps.h"
 #include "normalshop/io/file_assets.h"
+#include "normalshop/io/model.h"
 
 namespace normalshop::cli {
 
@@ -86,8 +87,13 @@ ImageJob edit_image(const EditFlags& flags, const Recipe& recipe) {
 
 void run_edit(const EditFlags& flags) {
   const bool picture = !flags.image.files.normals.empty();
-  if (!picture && flags.model.options().model.empty()) {
+  const std::filesystem::path model = flags.model.options().model;
+  if (!picture && model.empty()) {
     throw WrongUse("a model is missing, or --normals for a picture");
+  }
+  if (!picture && !is_model_file(model)) {
+    throw InvalidInput("'" + model.string() +
+                       "' is no model (.gltf, .glb or .obj), and a picture needs its --normals");
   }
   // The recipe first: a mistake in it should not cost the time of reading large maps.
   FileAssets assets(flags.recipe.parent_path());

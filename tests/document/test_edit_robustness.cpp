@@ -18,7 +18,7 @@ const std::string off_plane =
     " lies off the surface that the view shows; points are in object units (in a picture: pixels) "
     "from the view's centre, "
     "x "
-    "right and y up, and the model spans x -0.5 to 0.5, y -0.5 to 0.5";
+    "right and y up, and the surface spans x -0.5 to 0.5, y -0.5 to 0.5";
 
 TEST(EditFailures, StrokesOffTheSurfaceAreNamed) {
   Document d = flat_plane(64);

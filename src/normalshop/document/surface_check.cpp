@@ -123,7 +123,7 @@ bool copy_meets(const EditingChart& chart, const EditOperator& operation, const 
 void fail_off_surface(const std::string& field, const Extent& model) {
   throw InvalidInput(field +
                      " lies off the surface that the view shows; points are in object units (in a "
-                     "picture: pixels) from the view's centre, x right and y up, and the model "
+                     "picture: pixels) from the view's centre, x right and y up, and the surface "
                      "spans x " +
                      number_text(model.low.x()) + " to " + number_text(model.high.x()) + ", y " +
                      number_text(model.low.y()) + " to " + number_text(model.high.y()));

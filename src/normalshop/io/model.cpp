@@ -48,9 +48,14 @@ void fill_normals(Mesh& mesh) {
   }
 }
 
+bool is_model_file(const fs::path& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".gltf" || extension == ".glb" || extension == ".obj";
+}
+
 Model read_model(const fs::path& path, const ModelReadOptions& options) {
   const std::string extension = extension_of(path);
-  if (extension != ".gltf" && extension != ".glb" && extension != ".obj") {
+  if (!is_model_file(path)) {
     throw InvalidInput("'" + path.string() + "' is no model of a known kind; accepted are .gltf, " +
                        ".glb and .obj");
   }

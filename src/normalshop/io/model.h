@@ -55,6 +55,9 @@ struct ModelReadOptions {
   std::size_t max_triangles = std::size_t{1} << 27;
 };
 
+/// Does the extension tell a model: .gltf, .glb or .obj?
+bool is_model_file(const std::filesystem::path& path);
+
 /// By extension: .gltf, .glb, .obj. Throws IoError (missing, unreadable) or InvalidInput (not what
 /// it says, damaged, or needing something that is not supported).
 Model read_model(const std::filesystem::path& path, const ModelReadOptions& options = {});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "normalshop/io/detail/extension.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/open_document.h"
 #include "normalshop/surface/seams.h"
@@ -99,9 +98,7 @@ Value model_info(const std::filesystem::path& file, const ModelReadOptions& read
 }  // namespace
 
 Value file_info(const std::filesystem::path& file, const ModelReadOptions& reading) {
-  const std::string extension = extension_of(file);
-  const bool model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
-  return model ? model_info(file, reading) : image_info(file);
+  return is_model_file(file) ? model_info(file, reading) : image_info(file);
 }
 
 }  // namespace normalshop

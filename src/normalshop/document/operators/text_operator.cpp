@@ -22,11 +22,20 @@ struct TextEditOptions : EmbossOptions {
   }
 };
 
+/// A shell hands over \n as two characters.
+std::string with_line_breaks(std::string text) {
+  for (std::size_t at = text.find("\\n"); at != std::string::npos; at = text.find("\\n", at)) {
+    text.replace(at, 2, "\n");
+  }
+  return text;
+}
+
 class TextOperator : public PlacedOperator {
  public:
   explicit TextOperator(const FieldReader& options)
       : options_(read_options<TextEditOptions>(options)) {
     if (options_.text.empty()) options.required("text").fail("a text that is not empty");
+    options_.text = with_line_breaks(options_.text);
     check_scales(options);
   }
   std::string_view name() const override { return "text"; }
