@@ -8,6 +8,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/stopwatch.h"
+#include "normalshop/document/grazing.h"
 #include "normalshop/document/operate.h"
 #include "normalshop/document/surface_check.h"
 #include "normalshop/surface/seam_fit.h"
@@ -56,13 +57,14 @@ struct Source {
   SlopeImage slopes;
   SlopeImage base;  ///< may be empty
   MaskImage validity;
+  MaskImage grazing;  ///< may be empty
 };
 
 Source make_source(const Edit& edit, const EditingChart& chart) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
   const bool with_base = edit.operation->reads_base();
-  Source source{SlopeImage(width, height), {}, MaskImage(width, height)};
+  Source source{SlopeImage(width, height), {}, MaskImage(width, height), {}};
   if (with_base) source.base.resize(width, height);
   const bool ignore = edit.details == DetailsRule::Ignore;
   parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
@@ -79,6 +81,7 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
       }
     }
   });
+  if (!ignore) source.grazing = limit_grazing(source.slopes);
   extend(source.validity, source.slopes);
   if (with_base) extend(source.validity, source.base);
   return source;
@@ -154,18 +157,21 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   check_on_surface(edit, input.strokes, chart, input.region, place.model);
   Source source;
   if (edit.operation->reads()) source = make_source(edit, chart);
-  // Push needs neither.
-  chart.base_normal = {};
   chart.normal = {};
   input.source = source.slopes;
   input.base = source.base;
   input.validity = source.validity;
-  const OperatorResult result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
+  OperatorResult result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
+  const bool replaces = edit.details == DetailsRule::Ignore || !source.grazing.empty();
+  if (!source.grazing.empty()) {
+    replace_grazing(source.grazing, source.slopes, chart.base_normal, edit.mode, result);
+  }
   source = {};
+  chart.base_normal = {};  // push needs none
   report.times.operate = watch.lap();
 
   ChartEdit change{edit.mode, result.change, {}, result.region};
-  if (edit.details == DetailsRule::Ignore) change.coverage = result.coverage;
+  if (replaces) change.coverage = result.coverage;
   if (edit.strength > 0.0F) report.pushed = push_and_fit(mesh, seams, chart, change, storage);
   report.times.push = watch.lap();
   report.chart_width = chart.grid.width();
