@@ -12,7 +12,7 @@ namespace normalshop::raster {
 
 inline constexpr int tile_size = 64;
 inline constexpr int block_size = 8;
-inline constexpr int row_padding = 64;  ///< room for the widest vector past a row's end
+inline constexpr int row_padding = 16;  ///< room for the widest vector past a row's end
 inline constexpr int stride = tile_size + row_padding;
 
 /// A tile's pixels while its triangles are drawn: rows of `stride`.

@@ -179,6 +179,7 @@ void Rasterizer::draw_tiles(const Mesh& mesh, IdBuffer& out, bool front) {
                                   std::min(tile_size, height_ - y)};
       load_tile(rect, out, front, *tile);
       for (const Chunk& c : chunks_) {
+        if (!used(c)) continue;
         const std::span<const std::uint32_t> ids(c.triangles.data() + c.begin[i],
                                                  c.begin[i + 1] - c.begin[i]);
         raster::draw(rect, ids, vertices_.data(), mesh.triangles.data(), *tile);
