@@ -4,6 +4,7 @@
 #include "support/meshes.h"
 #include <gtest/gtest.h>
 
+#include "normalshop/chart/depth_steps.h"
 #include "normalshop/core/sample.h"
 
 namespace normalshop {

@@ -16,8 +16,4 @@ struct EffectiveOptions {
 /// border of the surface against nothing is no depth step: an edit may run to the rim.
 void compute_weight(EditingChart& chart, const EffectiveOptions& options);
 
-/// 1 where a depth step lies between the pixel and its neighbour to the right, below, left or
-/// above, relative to the pixel size and the slope of the base surface.
-void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps);
-
 }  // namespace normalshop
