@@ -117,17 +117,6 @@ class TriangleCache {
       prefetch(&mesh_.positions[vertex]);
     }
   }
-  /// Both for a row of triangles; `later` is the row after next.
-  void announce(const std::uint32_t* next, const std::uint32_t* later, int count) const {
-    for (int i = 0; i < count; ++i) {
-      if (next != nullptr && next[i] != no_triangle && (i == 0 || next[i] != next[i - 1])) {
-        announce_positions(next[i]);
-      }
-      if (later != nullptr && later[i] != no_triangle && (i == 0 || later[i] != later[i - 1])) {
-        announce_attributes(later[i]);
-      }
-    }
-  }
 
   const T& get(std::uint32_t triangle) {
     const std::size_t slot = triangle % slots;

@@ -25,10 +25,11 @@ class Pull {
         triangles_(mesh, chart.grid) {}
 
   void fill(const Rect& rect) {
-    for (int y = rect.y0 - 4; y < rect.y0; ++y) announce(rect, y);
+    for (int y = rect.y0 - 4; y < rect.y0; ++y) look_ahead(rect, y);
     for (int y = rect.y0; y < rect.y1; ++y) {
-      announce(rect, y);
-      if (find_runs(y, rect.x0, rect.x1)) {
+      look_ahead(rect, y);
+      if (visible(y).count > 0) {
+        interpolate(y, rect.x0, rect.width());
         fill_row(y, rect.x0, rect.width());
       } else {
         clear_row(y, rect.x0, rect.width());
@@ -37,6 +38,17 @@ class Pull {
   }
 
  private:
+  /// Pixels side by side that see one triangle.
+  struct Visible {
+    int begin;
+    int end;
+    std::uint32_t triangle;
+  };
+  struct VisibleRow {
+    std::array<Visible, PixelRow::capacity> runs;
+    std::size_t count = 0;
+  };
+  /// Pixels side by side that read one texture set.
   struct Run {
     int begin;
     int end;
@@ -44,18 +56,15 @@ class Pull {
     std::uint32_t node;  ///< of object-space normals
   };
 
-  /// Has the triangles of the rows 2 and 4 below y fetched.
-  void announce(const Rect& rect, int y) const {
-    const auto ids = [&](int row) {
-      const bool inside = row >= rect.y0 && row < rect.y1;
-      return inside ? chart_.ids.triangle.row(row) + rect.x0 : nullptr;
-    };
-    triangles_.announce(ids(y + 2), ids(y + 4), rect.width());
-  }
-  bool find_runs(int y, int x0, int x1);
+  VisibleRow& visible(int y) { return visible_[static_cast<std::size_t>(y) % visible_.size()]; }
+  void find_visible(int y, int x0, int count);
+  void look_ahead(const Rect& rect, int y);
+  void interpolate(int y, int x0, int count);
   void fill_row(int y, int x0, int count);
   void clear_row(int y, int x0, int count);
   void read_maps(const Run& run);
+  void find_texels_ahead(const Run& run);
+  void fetch(const RawImage& codes, const Run& run) const;
   Vec3f irregular_detail(std::size_t i) const;
 
   const Mesh& mesh_;
@@ -63,35 +72,62 @@ class Pull {
   const PullOptions& options_;
   EditingChart& chart_;
   TriangleCache<PixelTriangle> triangles_;
+  std::array<VisibleRow, 8> visible_;  // of the next rows
   PixelRow row_;
+  std::array<float, PixelRow::capacity> u_before_{};  // of the row above
+  std::array<float, PixelRow::capacity> v_before_{};
+  std::array<float, PixelRow::capacity> u_ahead_{};
+  std::array<float, PixelRow::capacity> v_ahead_{};
   std::array<Run, PixelRow::capacity> runs_;
   std::size_t run_count_ = 0;
 };
 
-/// Interpolates the row; its runs are pixels side by side that read one texture set. False when
-/// there are none.
-bool Pull::find_runs(int y, int x0, int x1) {
-  const std::uint32_t* ids = chart_.ids.triangle.row(y);
-  run_count_ = 0;
-  for (int x = x0; x < x1;) {
+void Pull::find_visible(int y, int x0, int count) {
+  const std::uint32_t* ids = chart_.ids.triangle.row(y) + x0;
+  VisibleRow& row = visible(y);
+  row.count = 0;
+  for (int x = 0; x < count;) {
     const int begin = x;
     const std::uint32_t id = ids[begin];
-    while (x < x1 && ids[x] == id) ++x;
-    std::fill(&row_.seen[static_cast<std::size_t>(begin - x0)],
-              &row_.seen[static_cast<std::size_t>(x - x0)], id == no_triangle ? 0.0F : 1.0F);
-    if (id == no_triangle) continue;
+    while (x < count && ids[x] == id) ++x;
+    if (id != no_triangle) row.runs[row.count++] = {begin, x, id};
+  }
+}
+
+/// Has the triangles of the rows 2 and 4 below y fetched.
+void Pull::look_ahead(const Rect& rect, int y) {
+  if (y + 4 < rect.y1) {
+    find_visible(y + 4, rect.x0, rect.width());
+    const VisibleRow& row = visible(y + 4);
+    for (std::size_t i = 0; i < row.count; ++i)
+      triangles_.announce_attributes(row.runs[i].triangle);
+  }
+  if (y + 2 < rect.y0 || y + 2 >= rect.y1) return;
+  const VisibleRow& row = visible(y + 2);
+  for (std::size_t i = 0; i < row.count; ++i) triangles_.announce_positions(row.runs[i].triangle);
+}
+
+/// Interpolates the row and divides it by what it reads.
+void Pull::interpolate(int y, int x0, int count) {
+  const std::uint32_t* ids = chart_.ids.triangle.row(y) + x0;
+  for (int x = 0; x < count; ++x) {
+    row_.seen[static_cast<std::size_t>(x)] = ids[x] == no_triangle ? 0.0F : 1.0F;
+  }
+  run_count_ = 0;
+  const VisibleRow& row = visible(y);
+  for (std::size_t i = 0; i < row.count; ++i) {
+    const auto& [begin, end, id] = row.runs[i];
     const PixelTriangle& triangle = triangles_.get(id);
-    interpolate_run(triangle, x0, y, begin - x0, x - x0, row_);
+    interpolate_run(triangle, x0, y, begin, end, row_);
     Run* last = run_count_ > 0 ? &runs_[run_count_ - 1] : nullptr;
     const std::uint32_t node = mesh_.nodes.empty() ? 0 : mesh_.nodes[id];
-    if (last != nullptr && last->end == begin - x0 && last->node == node &&
+    if (last != nullptr && last->end == begin && last->node == node &&
         last->texture_set == triangle.texture_set) {
-      last->end = x - x0;
+      last->end = end;
     } else {
-      runs_[run_count_++] = {begin - x0, x - x0, triangle.texture_set, node};
+      runs_[run_count_++] = {begin, end, triangle.texture_set, node};
     }
   }
-  return run_count_ > 0;
 }
 
 void Pull::clear_row(int y, int x0, int count) {
@@ -117,8 +153,39 @@ void Pull::fill_row(int y, int x0, int count) {
   std::copy_n(row_.details.data(), count, chart_.normal.row(y) + x0);
 }
 
+/// Where the pixels some rows below will read, if the maps go on as they came.
+void Pull::find_texels_ahead(const Run& run) {
+  constexpr float rows = 3.0F;
+  constexpr float farthest = 0.01F;  // from row to row: else they are another chart's
+  for (auto i = static_cast<std::size_t>(run.begin); i < static_cast<std::size_t>(run.end); ++i) {
+    const auto ahead = [&](float now, float& before) {
+      const float step = now - before;
+      before = now;
+      const float there = now + rows * step;
+      return std::abs(step) < farthest && there >= 0.0F && there < 1.0F ? there : 0.0F;
+    };
+    u_ahead_[i] = ahead(row_.u[i], u_before_[i]);
+    v_ahead_[i] = ahead(row_.v[i], v_before_[i]);
+  }
+}
+
+void Pull::fetch(const RawImage& codes, const Run& run) const {
+  if (codes.empty()) return;
+  const auto width = static_cast<float>(codes.width());
+  const auto height = static_cast<float>(codes.height());
+  const std::size_t bytes = codes.row_bytes() / static_cast<std::size_t>(codes.width());
+  for (auto i = static_cast<std::size_t>(run.begin); i < static_cast<std::size_t>(run.end); ++i) {
+    const auto x = static_cast<std::size_t>(u_ahead_[i] * width);
+    const auto y = static_cast<std::size_t>(v_ahead_[i] * height);
+    prefetch(codes.data() + y * codes.row_bytes() + x * bytes);
+  }
+}
+
 void Pull::read_maps(const Run& run) {
   const StorageSet& set = storage_.sets[run.texture_set];
+  find_texels_ahead(run);
+  if (options_.albedo) fetch(set.albedo.codes(), run);
+  if (options_.normals) fetch(set.normals.codes(), run);
   const auto begin = static_cast<std::size_t>(run.begin);
   const int count = run.end - run.begin;
   const float* u = &row_.u[begin];
