@@ -39,8 +39,8 @@ if(NORMALSHOP_BUILD_FUZZERS)
   target_link_options(normalshop_compiler INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# The floors do the work. The programs and tests around them take longer to compile than to run, most
-# of all with sanitizers, so they are optimised less.
+# The floors do the work. The tests around them take longer to compile than to run, most of all with
+# sanitizers, so they are optimised less.
 foreach(kind floor program test)
   add_library(normalshop_${kind}_compiler INTERFACE)
   add_library(normalshop::${kind}_compiler ALIAS normalshop_${kind}_compiler)
@@ -51,7 +51,6 @@ if(NORMALSHOP_BUILD_FUZZERS)
   target_compile_options(normalshop_floor_compiler INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 if(NORMALSHOP_SANITIZE)
-  target_compile_options(normalshop_program_compiler INTERFACE -O0)
   target_compile_options(normalshop_test_compiler INTERFACE -O0)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     # Highway's emulated target takes two thirds of a kernel's compile time, and no machine runs it.
