@@ -81,6 +81,15 @@ void domain_transform_normals_one_core(benchmark::State& state) {
   count_pixels(state);
 }
 
+void domain_transform_two_rolls_one_core(benchmark::State& state) {
+  const ThreadLimit limit(1);
+  SlopeImage out(side, side);
+  for (auto _ : state) {
+    domain_transform({picture().slopes, {}, {}}, {out, {}}, out.rect(), {.rolls = 2});
+  }
+  count_pixels(state);
+}
+
 void domain_transform_6d_one_core(benchmark::State& state) {
   const ThreadLimit limit(1);
   SlopeImage out(side, side);
@@ -106,6 +115,7 @@ NORMALSHOP_BENCHMARK(bilateral_6d_slopes_and_colours);
 NORMALSHOP_BENCHMARK(bilateral_normals);
 NORMALSHOP_BENCHMARK(rolling_guidance_normals);
 NORMALSHOP_BENCHMARK(domain_transform_normals_one_core);
+NORMALSHOP_BENCHMARK(domain_transform_two_rolls_one_core);
 NORMALSHOP_BENCHMARK(domain_transform_6d_one_core);
 NORMALSHOP_BENCHMARK(domain_transform_dab);
 

@@ -16,7 +16,7 @@ inline constexpr float pi = 3.14159265F;
 
 /// Four quarters of a square: a pyramid and a dome on a plane, roof ridges, waves. Slopes up
 /// to 1.4.
-inline SlopeImage relief(int size, float ridge_period = 1.0F) {
+inline SlopeImage relief(int size, float ridge_period = 1.5F) {
   SlopeImage slopes(size, size, Vec2f::Zero());
   const int half = size / 2;
   const auto fill = [&](int x0, int y0, const auto& slope_at) {

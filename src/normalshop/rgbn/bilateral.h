@@ -9,10 +9,10 @@
 namespace normalshop {
 
 struct BilateralOptions {
-  float sigma_space = 3.0F;
+  float sigma_space = 3.5F;
   float sigma_color = 0.1F;
   float sigma_normal = 0.2F;
-  float guide_sigma = 0.7F;
+  float guide_sigma = 0.6F;
   Border border = Border::Clamp;
 
   static constexpr auto fields() {
@@ -23,8 +23,7 @@ struct BilateralOptions {
               "Colours this far apart in linear RGB hardly mix; 0 ignores colour"),
         field("sigma_normal", &BilateralOptions::sigma_normal, "1", 0.0, 1e6,
               "Unit normals this far apart hardly mix: 0.2 is 11 degrees, below 0.005 is 0.005; 0 "
-              "ignores "
-              "normals"),
+              "ignores normals"),
         field("guide_sigma", &BilateralOptions::guide_sigma, "length", 0.0, 1e6,
               "Gaussian that takes noise out of what is compared; 0 compares the input itself"),
         field("border", &BilateralOptions::border, "What is read beyond the image")};

@@ -38,6 +38,9 @@ void check(const DomainTransformOptions& options) {
   if (options.iterations < 1 || options.iterations > 10) {
     throw InvalidInput("domain_transform: iterations must be from 1 to 10");
   }
+  if (options.rolls < 0 || options.rolls > 10) {
+    throw InvalidInput("domain_transform: rolls must be from 0 to 10");
+  }
 }
 
 /// Room for a plane, filled up with 0 to whole groups of columns. Its rows lie a bit further apart:
@@ -110,13 +113,10 @@ struct Weights {
 
 class WeightRule {
  public:
-  explicit WeightRule(const DomainTransformOptions& options) {
+  WeightRule(const DomainTransformOptions& options, int iterations) {
     const auto sigma = static_cast<double>(options.sigma_space);
-    const double n = options.iterations;
-    const double widest =
-        sigma * std::sqrt(3.0) * std::exp2(n - 1.0) / std::sqrt(std::exp2(2.0 * n) - 1.0);
-    // The width of the first iteration; all distances are multiples of it.
-    const double per_pixel = std::sqrt(2.0) / widest;
+    // All distances are multiples of a pixel's in the first iteration.
+    const double per_pixel = distance_of_pixels(sigma, iterations);
     flat_ = static_cast<float>(std::exp(-per_pixel));
     normal_scale_ = scale(per_pixel * sigma, options.sigma_normal);
     color_scale_ = scale(per_pixel * sigma, options.sigma_color);
@@ -131,9 +131,24 @@ class WeightRule {
     }
     weights_of_distances(out, flat_, count);
   }
-  bool needs_color() const { return color_scale_ > 0.0F; }
 
  private:
+  /// The distance u between pixels, in widths of the first iteration, at which the whole filter's
+  /// standard deviation is sigma. Forth and back with the weight exp(-u) has the variance
+  /// 1 / (2 sinh^2(u / 2)), and each iteration doubles u.
+  static double distance_of_pixels(double sigma, int iterations) {
+    double near = 1e-9;
+    double far = 200.0;
+    for (int halving = 0; halving < 100; ++halving) {
+      const double u = std::sqrt(near * far);
+      double variance = 0.0;
+      for (int i = 0; i < iterations; ++i) {
+        variance += 0.5 / std::pow(std::sinh(0.5 * std::min(std::exp2(i) * u, 600.0)), 2.0);
+      }
+      (variance > sigma * sigma ? near : far) = u;
+    }
+    return std::sqrt(near * far);
+  }
   static float scale(double space, float range) {
     if (range == 0.0F) return 0.0F;
     return static_cast<float>(std::min(space / static_cast<double>(range), 1e15));
@@ -153,10 +168,10 @@ void block(MaskView validity, int y, Weights& weights) {
 }
 
 Weights make_weights(const RgbnView& guide, MaskView validity,
-                     const DomainTransformOptions& options) {
-  const WeightRule rule(options);
+                     const DomainTransformOptions& options, int iterations) {
+  const WeightRule rule(options, iterations);
   const int width = guide.slopes.width();
-  const bool color = rule.needs_color() && !guide.color.empty();
+  const bool color = options.sigma_color > 0.0F && !guide.color.empty();
   const int height = guide.slopes.height();
   Weights weights{make_plane(width, height), make_plane(width, height)};
   parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t a, std::size_t b) {
@@ -291,6 +306,17 @@ Rect held_around(const Rect& region, const Rect& image, const DomainTransformOpt
   return intersect(wanted, {-image.x1, -image.y1, 2 * image.x1, 2 * image.y1});
 }
 
+RgbnWindow empty_window(const Rect& size, bool color) {
+  RgbnWindow window;
+  window.slopes.resize(size.width(), size.height());
+  window.slopes.fill(Vec2f::Zero());
+  if (color) {
+    window.color.resize(size.width(), size.height());
+    window.color.fill(Vec3f::Zero());
+  }
+  return window;
+}
+
 RgbnWindow blurred(const RgbnView& window, float sigma) {
   RgbnWindow guide;
   const Rect all = window.slopes.rect();
@@ -340,19 +366,38 @@ RgbnView part(const RgbnView& image, const Rect& where) {
   return {part(image.slopes, where), part(image.color, where), {}};
 }
 
+/// The planes of `window` filtered along the guide's distances.
+std::vector<Image<float>> filtered(const RgbnView& window, const RgbnView& guide, bool color,
+                                   const DomainTransformOptions& options, int iterations) {
+  Weights weights = make_weights(guide, window.validity, options, iterations);
+  std::vector<Image<float>> planes = make_planes(window, color);
+  for (int i = 0; i < iterations; ++i) {
+    filter_across(planes, weights.across, guide.slopes.width(), i > 0);
+    filter_down(planes, weights.down, guide.slopes.width(), i > 0);
+  }
+  return planes;
+}
+
 /// Filters `window`, which shows the pixels `held`, and writes those of the region.
 void filter(const RgbnView& window, const Rect& held, const RgbnView& source,
             const RgbnSpan& target, const Rect& region, const DomainTransformOptions& options) {
-  Weights weights =
-      options.guide_sigma > 0.0F
-          ? make_weights(blurred(window, options.guide_sigma).view(), window.validity, options)
-          : make_weights(window, window.validity, options);
-  std::vector<Image<float>> planes = make_planes(window, !target.color.empty());
-  for (int i = 0; i < options.iterations; ++i) {
-    filter_across(planes, weights.across, held.width(), i > 0);
-    filter_down(planes, weights.down, held.width(), i > 0);
+  const bool compares_color = options.sigma_color > 0.0F && !window.color.empty();
+  RgbnWindow blur;
+  RgbnView guide = window;
+  if (options.guide_sigma > 0.0F) {
+    blur = blurred(window, options.guide_sigma);
+    guide = blur.view();
   }
-  store(planes, held, window.validity, source, target, region);
+  for (int i = 0; i < options.rolls; ++i) {
+    const auto planes = filtered(window, guide, compares_color, options, 1);
+    RgbnWindow next = empty_window(window.slopes.rect(), compares_color);
+    const Rect all = window.slopes.rect();
+    store(planes, all, window.validity, window, {next.slopes, next.color}, all);
+    blur = std::move(next);
+    guide = blur.view();
+  }
+  store(filtered(window, guide, !target.color.empty(), options, options.iterations), held,
+        window.validity, source, target, region);
 }
 
 }  // namespace
@@ -378,9 +423,10 @@ Rect domain_transform(const RgbnView& source, const RgbnSpan& target, Rect regio
 }
 
 int reach(const DomainTransformOptions& options) {
-  return static_cast<int>(
-             std::ceil(std::min(6.0 * static_cast<double>(options.sigma_space), 1e8))) +
-         reach(SmoothOptions{.sigma = options.guide_sigma});
+  // A guide's error at its border reaches the region only through what falls off on the way.
+  const double sigmas = 6.0 + options.rolls;
+  const double pixels = std::min(sigmas * static_cast<double>(options.sigma_space), 1e8);
+  return static_cast<int>(std::ceil(pixels)) + reach(SmoothOptions{.sigma = options.guide_sigma});
 }
 
 }  // namespace normalshop

@@ -12,8 +12,8 @@ struct RollingGuidanceOptions {
   float sigma_space = 3.0F;
   float sigma_color = 0.1F;
   float sigma_normal = 0.2F;
-  float guide_sigma = 0.7F;
-  int iterations = 4;
+  float guide_sigma = 0.5F;
+  int iterations = 3;
   Border border = Border::Clamp;
 
   static constexpr auto fields() {
@@ -25,8 +25,7 @@ struct RollingGuidanceOptions {
               "Colours this far apart in linear RGB hardly mix; 0 ignores colour"),
         field("sigma_normal", &Options::sigma_normal, "1", 0.0, 1e6,
               "Unit normals this far apart hardly mix: 0.2 is 11 degrees, below 0.005 is 0.005; 0 "
-              "ignores "
-              "normals"),
+              "ignores normals"),
         field("guide_sigma", &Options::guide_sigma, "length", 0.0, 1e6,
               "Structures smaller than this Gaussian vanish, the edges of larger ones come back; 0 "
               "starts from the input"),
