@@ -20,6 +20,10 @@ constexpr float least_sigma_normal = 0.005F;
 /// A coordinate that nothing outweighs, finite so that differences are numbers.
 constexpr float farthest = 1e15F;
 
+/// Colours are averaged as they are compared where that loses nothing: scaled by at most this they
+/// may be up to 1e9.
+constexpr double most_shared_scale = 1e6;
+
 /// 1 / 2 sigma^2 in the kernel's measure; 0: ignored.
 double falloff(float sigma) {
   if (sigma == 0.0F) return 0.0;
@@ -58,6 +62,9 @@ class Tiles {
         color_scale_(input.guide().color.empty() ? 0.0 : std::sqrt(falloff(options.sigma_color))) {
     layout_.guides = color_scale_ > 0.0 ? 6 : 3;
     layout_.values = target.color.empty() ? 2 : 5;
+    layout_.averages_guide = layout_.guides == 6 && layout_.values == 5 &&
+                             input.separate_guide.slopes.empty() &&
+                             color_scale_ <= most_shared_scale;
     layout_.weighted = !input.source.validity.empty() || !input.guide().validity.empty();
     // |n_i - n_j|^2 = 2 (1 - <n_i, n_j>)
     layout_.normal_factor =
@@ -114,7 +121,7 @@ class Tiles {
         }
       }
       for (const float s : limit_slope(input_.source.slopes(x, y))) put(s);
-      if (layout_.values == 5) {
+      if (layout_.values == 5 && !layout_.averages_guide) {
         for (const float c : input_.source.color(x, y)) put(c);
       }
       if (layout_.weighted) put(input_.weight(x, y));
@@ -122,6 +129,7 @@ class Tiles {
   }
 
   void store_row(int x0, int x1, int y, const Image<float>& means) const {
+    const auto scale = static_cast<float>(layout_.averages_guide ? 1.0 / color_scale_ : 1.0);
     for (int x = x0; x < x1; ++x) {
       const int u = input_x(x);
       const int v = input_y(y);
@@ -130,7 +138,7 @@ class Tiles {
       const Vec2f slope = limit_slope(input_.source.slopes(u, v)) + Vec2f(means(i, 0), means(i, 1));
       Vec3f color = Vec3f::Zero();
       if (layout_.values == 5) {
-        color = input_.source.color(u, v) + Vec3f(means(i, 2), means(i, 3), means(i, 4));
+        color = input_.source.color(u, v) + scale * Vec3f(means(i, 2), means(i, 3), means(i, 4));
       }
       write_filtered(source_, target_, x, y, slope, color);
     }

@@ -21,15 +21,17 @@ struct BilateralTap {
 
 /// Pixels as planes of numbers, `pitch` floats apart. `guides` are compared: three of the unit
 /// normal, whose s d / n is normal_factor (1 - <n_i, n_j>), and, if there are six, three of the
-/// colour, whose squared distance is it. `values` (2 or 5) are averaged. Where pixels are
-/// `weighted`, the last plane is the weight of each.
+/// colour, whose squared distance is it. `values` (2 or 5) are averaged: each has a plane, but if
+/// `averages_guide` the last three are the guide's colours. Where pixels are `weighted`, the last
+/// plane is the weight of each.
 struct BilateralLayout {
   int guides;
   int values;
+  bool averages_guide;
   bool weighted;
   float normal_factor;
   std::ptrdiff_t pitch;
-  int planes() const { return guides + values + (weighted ? 1 : 0); }
+  int planes() const { return guides + values - (averages_guide ? 3 : 0) + (weighted ? 1 : 0); }
 };
 
 /// Rows are computed in pieces of this many pixels.
