@@ -160,7 +160,8 @@ TEST(DomainTransform, AMirroredBorderIsAMirrorImage) {
   const SlopeImage mirrored = filtered(slopes, options);
   const SlopeImage expected = filtered(surrounded(slopes, 1, Border::Mirror), options);
   for (int y = 0; y < 30; ++y) {
-    for (int x = 0; x < 41; ++x) EXPECT_LT((mirrored(x, y) - expected(41 + x, 30 + y)).norm(), 2e-4F);
+    for (int x = 0; x < 41; ++x)
+      EXPECT_LT((mirrored(x, y) - expected(41 + x, 30 + y)).norm(), 2e-4F);
   }
 }
 
