@@ -8,6 +8,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/rgbn/bilateral.h"
+#include "normalshop/rgbn/smooth.h"
 
 namespace normalshop {
 namespace {
@@ -108,11 +109,23 @@ INSTANTIATE_TEST_SUITE_P(Options, BilateralCase,
                                          Case{8.0F, 0.1F, 0.3F, 0.0F},
                                          Case{2.0F, 0.0F, 0.0F, 0.0F}));
 
+// The scene that filters are judged by: its creases are as hard for the Gaussian as they were when
+// it was frozen.
+TEST(Relief, TheGaussianLeaves265) {
+  double least = 90.0;
+  for (float sigma = 0.8F; sigma < 2.0F; sigma += 0.1F) {
+    least = std::min(least, test::error_left(5.0F, [&](const SlopeImage& noisy, SlopeImage& out) {
+                       smooth(noisy, {}, out, out.rect(), {.sigma = sigma});
+                     }));
+  }
+  EXPECT_NEAR(least, 2.65, 0.02);
+}
+
 TEST(Bilateral, TakesNoiseOffAndLeavesEdges) {
-  const SlopeImage clean = relief(192);
-  const double error = mean_error(clean, filtered(with_noise(clean, 5.0F, 7), {}));
+  const double error = test::error_left(
+      5.0F, [](const SlopeImage& noisy, SlopeImage& out) { out = filtered(noisy, {}); });
   RecordProperty("degrees", std::to_string(error));
-  EXPECT_LE(error, 1.2);
+  EXPECT_LE(error, 1.25);
 }
 
 TEST(Bilateral, KeepsConstantsToTheLastBit) {

@@ -125,14 +125,11 @@ Rect held_around(const Rect& region, const Rect& image, const DomainTransformOpt
   return intersect(wanted, {-image.x1, -image.y1, 2 * image.x1, 2 * image.y1});
 }
 
-RgbnWindow empty_window(const Rect& size, bool color) {
+/// Room for a guide.
+RgbnWindow make_window(const Rect& size, bool color) {
   RgbnWindow window;
   window.slopes.resize(size.width(), size.height());
-  window.slopes.fill(Vec2f::Zero());
-  if (color) {
-    window.color.resize(size.width(), size.height());
-    window.color.fill(Vec3f::Zero());
-  }
+  if (color) window.color.resize(size.width(), size.height());
   return window;
 }
 
@@ -141,7 +138,7 @@ RgbnWindow first_guide(const RgbnView& window, bool color, const DomainTransform
   if (options.guide_sigma == 0.0F) return {};
   const SmoothOptions gaussian{.sigma = options.guide_sigma};
   const Rect all = window.slopes.rect();
-  RgbnWindow guide = empty_window(all, color);
+  RgbnWindow guide = make_window(all, color);
   smooth(window.slopes, window.validity, guide.slopes, all, gaussian);
   if (color) smooth(window.color, window.validity, guide.color, all, gaussian);
   return guide;
@@ -211,7 +208,10 @@ void filter(const RgbnView& window, const Rect& held, const RgbnView& source,
   Planes work;
   for (int i = 0; i < options.rolls; ++i) {
     work.filter(window, compared, compares_color, options, 1);
-    if (guide.slopes.empty()) guide = empty_window(all, compares_color);
+    if (guide.slopes.empty()) {
+      guide = make_window(all, compares_color);
+      copy_region(window, {guide.slopes, guide.color}, all);  // pixels that don't count stay so
+    }
     store(work.planes, all, window.validity, window, {guide.slopes, guide.color}, all);
     compared = guide.view();
   }
