@@ -31,10 +31,10 @@ struct DomainTransformOptions {
             "is 11 degrees); 0 ignores normals"),
         field("guide_sigma", &Options::guide_sigma, "length", 0.0, 1e6,
               "Gaussian that takes noise out of what is compared; 0 compares the input itself"),
-        field("rolls", &Options::rolls, "", 0, 10,
+        field("rolls", &Options::rolls, "1", 0, 10,
               "How often the filtered image becomes what is compared and the input is filtered "
               "anew; 0 filters once"),
-        field("iterations", &Options::iterations, "", 1, 10,
+        field("iterations", &Options::iterations, "1", 1, 10,
               "Passes along rows and columns; few leave streaks"),
         field("border", &Options::border, "What is read beyond the image")};
   }

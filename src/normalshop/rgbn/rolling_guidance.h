@@ -29,7 +29,7 @@ struct RollingGuidanceOptions {
         field("guide_sigma", &Options::guide_sigma, "length", 0.0, 1e6,
               "Structures smaller than this Gaussian vanish, the edges of larger ones come back; 0 "
               "starts from the input"),
-        field("iterations", &Options::iterations, "", 0, 20,
+        field("iterations", &Options::iterations, "1", 0, 20,
               "How often edges are brought back; 0 leaves the input as it is"),
         field("border", &Options::border, "What is read beyond the image")};
   }
