@@ -40,7 +40,8 @@ struct BilateralOptions {
 /// its validity is 0 or it is not finite.
 ///
 /// c and n are those of the source, or of `guide` where there is one, blurred by guide_sigma.
-/// Without colour sigma_color is ignored. The result need not be the slopes of any height.
+/// Without colour sigma_color is ignored; colours may be up to 1e9. The result need not be the
+/// slopes of any height.
 ///
 /// All images have one size; target.color needs source.color; target may be source. A region gives
 /// the bits of the whole image while guide_sigma is at most 8 pixels. Returns the pixels that it

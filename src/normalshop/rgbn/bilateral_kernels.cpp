@@ -59,7 +59,7 @@ HWY_INLINE void Pixels(const float* center, const BilateralLayout& layout, const
       }
       weight[i] = hn::Sub(weight[i], hn::Add(hn::Add(square[0], square[1]), square[2]));
     }
-    for (int i = 0; i < side_by_side; ++i) weight[i] = Power(weight[i]);
+    for (V& w : weight) w = Power(w);
     for (int i = 0; i < side_by_side; ++i) {
       if constexpr (Weighted) {
         weight[i] = hn::Mul(weight[i], hn::LoadU(d, pixel[i] + (G + C) * pitch));
