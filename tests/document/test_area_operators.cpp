@@ -1,5 +1,7 @@
 #include "document/edit_fixture.h"
+#include "support/relief.h"
 
+#include "normalshop/core/error.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/document/image_document.h"
 #include "normalshop/rgbn/curl.h"
@@ -143,13 +145,122 @@ TEST(AreaOperators, CombineByEveryModel) {
   }
 }
 
+/// The edge of a roof across the middle, with noise of 5 degrees.
+SlopeImage noisy_roof(int size) {
+  SlopeImage slopes(size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) slopes(x, y) = {x < size / 2 ? 0.4F : -0.4F, 0.1F};
+  }
+  return with_noise(slopes, 5.0F, 3);
+}
+
+/// Mean degrees between the roof and the normals in columns [x0, x1), rows away from the border.
+double roof_error(const NormalMap& map, int x0, int x1) {
+  double sum = 0.0;
+  for (int y = 16; y < map.height() - 16; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      const Vec2f roof(x < map.width() / 2 ? 0.4F : -0.4F, 0.1F);
+      sum += angle_degrees(map.normal(x, y), normal_from_slope(roof));
+    }
+  }
+  return sum / ((map.height() - 32) * (x1 - x0));
+}
+
+NormalMap float_map(SlopeView slopes) { return picture(slopes).normals(); }
+
+const std::vector<std::string> denoise_methods{"bilateral", "rolling", "transform"};
+
+TEST(AreaOperators, DenoiseCleansAMeshAndKeepsItsCrease) {
+  const NormalMap noisy = float_map(noisy_roof(192));
+  EXPECT_GT(roof_error(noisy, 16, 176), 5.0);
+  for (const std::string& method : denoise_methods) {
+    Document mesh = document(plane_grid(2), noisy);
+    mesh.apply(edit(R"("operator": "denoise", "view": "front",
+        "options": {"sigma": 0.02, "method": ")" +
+                    method + "\"}"));
+    EXPECT_LT(roof_error(map_of(mesh), 16, 176), 1.5) << method;
+    EXPECT_LT(roof_error(map_of(mesh), 94, 98), 4.0) << method;  // two pixels on each side
+  }
+  Document blurred = document(plane_grid(2), noisy);
+  blurred.apply(edit(R"("operator": "smooth", "view": "front", "options": {"sigma": 0.02})"));
+  EXPECT_GT(roof_error(map_of(blurred), 94, 98), 15.0);
+}
+
+TEST(AreaOperators, DenoiseOfAPartIsThatOfTheWhole) {
+  const SlopeImage slopes = noisy_roof(96);
+  for (const std::string& method : denoise_methods) {
+    const std::string options = R"("sigma": 2, "method": ")" + method + "\"";
+    ImageDocument whole = picture(slopes);
+    ImageDocument part = picture(slopes);
+    whole.apply(edit(R"("operator": "denoise", "view": "front", "options": {)" + options + "}"));
+    const EditReport report = part.apply(edit(
+        R"("operator": "denoise", "view": "front", "options": {"area": "inside", "feather": 1, )" +
+        options + R"(}, "strokes": [[[-12, -12], [12, -12], [12, 12], [-12, 12]]])"));
+    EXPECT_LT(report.chart_width, 96) << method;
+    for (int y = 38; y < 58; ++y) {
+      for (int x = 38; x < 58; ++x) {
+        EXPECT_LT((whole.normals().normal(x, y) - part.normals().normal(x, y)).norm(), 2e-4F)
+            << method << " " << x << " " << y;
+      }
+    }
+    EXPECT_FALSE(part.normals().edited(33, 48));
+  }
+}
+
+TEST(AreaOperators, DenoiseHeedsColours) {
+  for (const std::string& method : denoise_methods) {
+    for (const bool heeds : {false, true}) {
+      SlopeImage slopes(48, 40);
+      ImageDocument::Images images;
+      images.colors = ColorImage(48, 40);
+      for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < 48; ++x) {
+          slopes(x, y) = {x < 24 ? 0.02F : -0.02F, 0.0F};
+          images.colors(x, y) = Vec3f::Constant(x < 24 ? 0.2F : 0.8F);
+        }
+      }
+      const ColorImage colors = images.colors;
+      images.normals = float_map(slopes);
+      ImageDocument document(std::move(images));
+      document.apply(edit(R"("operator": "denoise", "view": "front", "options": {"sigma": 4,
+          "guide_sigma": 0.1, "sigma_color": )" +
+                          std::string(heeds ? "0.05" : "0") + R"(, "method": ")" + method + "\"}"));
+      const float beside = slopes_of(document).slopes(24, 20).x();
+      if (heeds) {
+        EXPECT_NEAR(beside, -0.02F, 0.001F) << method;
+      } else {
+        EXPECT_GT(beside, -0.01F) << method;
+      }
+      EXPECT_EQ(document.colors()(24, 20), colors(24, 20));
+    }
+  }
+}
+
+TEST(AreaOperators, DenoiseRefusesWidthsThatOnlyTransformTakes) {
+  const std::string fields = R"("operator": "denoise", "view": "front", "options": {"sigma": 101)";
+  ImageDocument document = picture(swirl(0.3F));
+  try {
+    document.apply(edit(fields + "}"));
+    ADD_FAILURE() << "accepted";
+  } catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(),
+                 "r.json: edits[0]: denoise: sigma and guide_sigma must be at most 100 pixels for "
+                 "the methods "
+                 "\"bilateral\" and \"rolling\"; \"transform\" takes more");
+  }
+  EXPECT_FALSE(document.normals().has_edits());
+  document.apply(edit(fields + R"(, "method": "transform"})"));
+  EXPECT_TRUE(document.normals().has_edits());
+}
+
 /// The same edits in the chart of a mesh.
 TEST(AreaOperators, WorkOnAMesh) {
-  for (const std::string name : {"flatten", "paint", "rotate", "balance", "project"}) {
+  for (const std::string name : {"flatten", "paint", "rotate", "balance", "project", "denoise"}) {
     Document mesh = document(plane_grid(2), noise_map(64, CodeType::U16));
-    const std::string options = name == "rotate"  ? R"({"angle": 90})"
-                                : name == "paint" ? R"({"tilt": 20})"
-                                                  : "{}";
+    const std::string options = name == "rotate"    ? R"({"angle": 90})"
+                                : name == "paint"   ? R"({"tilt": 20})"
+                                : name == "denoise" ? R"({"sigma": 0.05, "sigma_normal": 0.5})"
+                                                    : "{}";
     const EditReport report = mesh.apply(
         edit(R"("operator": ")" + name + R"(", "view": "front", "options": )" + options));
     EXPECT_GT(report.pushed.changed, 2000U) << name;

@@ -217,6 +217,11 @@ TEST(ImageDocument, FiltersReadAcrossTheSidesOfTiles) {
         R"("operator": "smooth", "options": {"sigma": 9})",
         R"("operator": "sharpen", "options": {"sigma": 2, "amount": 1})",
         R"("operator": "filter", "options": {"kind": "band_pass", "sigma": 5, "noise_sigma": 1})",
+        R"("operator": "denoise", "options": {"sigma": 3, "sigma_normal": 1})",
+        R"("operator": "denoise",
+           "options": {"method": "bilateral", "sigma": 4, "sigma_normal": 1})",
+        R"("operator": "denoise",
+           "options": {"method": "transform", "sigma": 4, "sigma_normal": 1})",
         R"("operator": "project")"}) {
     const Edit e = edit(fields + R"(, "view": "front")");
     ImageDocument here = picture(map, Border::Wrap);

@@ -41,11 +41,16 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
   {"operator": "filter", "view": "bottom",
    "options": {"kind": "band_pass", "sigma": 0.07, "noise_sigma": 0.02, "amount": -2,
                "area": "brush", "brush": 0.3, "hardness": 0.1},
+   "strokes": [[[0, 0], [1, 1]]]},
+  {"operator": "denoise", "view": "left",
+   "options": {"method": "transform", "sigma": 0.07, "sigma_normal": 0.3, "sigma_color": 0.4,
+               "guide_sigma": 0.01, "iterations": 2, "area": "brush", "brush": 0.3,
+               "hardness": 0.1},
    "strokes": [[[0, 0], [1, 1]]]}]})";
 
 TEST(Recipe, WhatIsWrittenReadsBackTheSame) {
   const Recipe recipe = parse(full_recipe);
-  ASSERT_EQ(recipe.edits.size(), 7U);
+  ASSERT_EQ(recipe.edits.size(), 8U);
   const std::string once = to_json(to_value(recipe));
   EXPECT_EQ(to_json(to_value(parse(once))), once);
 }
@@ -54,7 +59,7 @@ TEST(Recipe, EveryFieldComesThrough) {
   const std::string text = to_json(to_value(parse(full_recipe)));
   const Value written = parse_json(text, "");
   const Value given = parse_json(full_recipe, "");
-  for (std::size_t i = 0; i < 7; ++i) {
+  for (std::size_t i = 0; i < 8; ++i) {
     const Value& before = given.find("edits")->array()->at(i);
     const Value& after = written.find("edits")->array()->at(i);
     for (const auto& [name, value] : *before.object()) {

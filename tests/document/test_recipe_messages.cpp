@@ -145,6 +145,11 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "all kinds but \"scale\"");
   EXPECT_EQ(other("filter", R"({"kind": "edge_enhance", "sigma": 1, "noise_sigma": 1})"),
             "r.json: edits[0].options.noise_sigma must be a number below sigma, not the number 1");
+  EXPECT_EQ(other("denoise", "{}"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000");
+  EXPECT_EQ(other("denoise", R"({"sigma": 1, "method": "median"})"),
+            "r.json: edits[0].options.method must be bilateral, rolling or transform, not the text "
+            "\"median\"");
   EXPECT_EQ(other("filter", R"({"kind": "median", "sigma": 1})"),
             "r.json: edits[0].options.kind must be gaussian, high_pass, band_pass, "
             "laplacian_of_gaussian, unsharp, edge_enhance or scale, not the text \"median\"");

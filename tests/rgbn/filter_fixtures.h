@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <complex>
+#include <cstring>
 #include <functional>
 #include <vector>
 
@@ -47,12 +48,7 @@ Image<T> rolled(const Image<T>& image, int dx, int dy) {
 
 template <class T>
 bool same_bits(const Image<T>& a, const Image<T>& b) {
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      if (a(x, y) != b(x, y)) return false;
-    }
-  }
-  return a.rect() == b.rect();
+  return a.rect() == b.rect() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 inline float largest_difference(const SlopeImage& a, const SlopeImage& b) {
