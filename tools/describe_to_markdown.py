@@ -47,7 +47,8 @@ def accepted(field):
     if "range" in field:
         low, high = field["range"]
         unit = {"1": "", "length": ", length"}.get(field.get("unit", ""), ", " + field.get("unit", ""))
-        return f"{number(low)} to {number(high)}{unit}"
+        each = "list of numbers from " if kind == "numbers" else ""
+        return f"{each}{number(low)} to {number(high)}{unit}"
     return kind
 
 

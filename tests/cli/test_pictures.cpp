@@ -96,6 +96,23 @@ TEST_F(Pictures, EveryOperatorIsAVerbWithItsOptions) {
   }
 }
 
+TEST_F(Pictures, ListsOfNumbersHaveCommas) {
+  good({"equalize", path("normal.png"), "--sigma", "1", "--gains", "0,1.5,-1", "-o",
+        path("verb.png")});
+  write_file(folder_ / "equalize.json", R"({"version": 1, "edits": [{"operator": "equalize",
+      "view": "front", "options": {"sigma": 1, "gains": [0, 1.5, -1]}}]})");
+  good({"edit", "--normals", path("normal.png"), "--recipe", path("equalize.json"), "-o",
+        path("out")});
+  EXPECT_TRUE(same_codes(image("out/normal.png"), image("verb.png")));
+  EXPECT_FALSE(same_codes(image("normal.png"), image("verb.png")));
+  for (const std::string gains : {"1;2", "", "1,,2", "1,x"}) {
+    bad({"equalize", path("normal.png"), "--sigma", "1", "--gains", gains, "-o", path("o.png")}, 2,
+        {"--gains"});
+  }
+  bad({"equalize", path("normal.png"), "--sigma", "1", "--gains", "1,200", "-o", path("o.png")}, 2,
+      {"--gains[1] must be a number from -100 to 100", "200"});
+}
+
 TEST_F(Pictures, BitsAndGreenOfTheOutput) {
   good({"edit", "--normals", path("normal.png"), "--recipe", path("recipe.json"), "-o", path("out"),
         "--preset", "directx", "--bits", "16"});

@@ -148,6 +148,21 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
   EXPECT_EQ(other("filter", R"({"kind": "median", "sigma": 1})"),
             "r.json: edits[0].options.kind must be gaussian, high_pass, band_pass, "
             "laplacian_of_gaussian, unsharp, edge_enhance or scale, not the text \"median\"");
+  EXPECT_EQ(other("equalize", R"({"gains": [1]})"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000");
+  EXPECT_EQ(other("equalize", R"({"sigma": 0, "gains": [1]})"),
+            "r.json: edits[0].options.sigma must be a number above 0, not the number 0");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1})"),
+            "r.json: edits[0].options.gains is missing; it must be a list");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": "1,2"})"),
+            "r.json: edits[0].options.gains must be a list, not the text \"1,2\"");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": []})"),
+            "r.json: edits[0].options.gains must be a list of 1 to 16 numbers, not a list of 0");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": [1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1]})"),
+            "r.json: edits[0].options.gains must be a list of 1 to 16 numbers, not a list of 17");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": [0, 101]})"),
+            "r.json: edits[0].options.gains[1] must be a number from -100 to 100, not the number "
+            "101");
 }
 
 TEST(RecipeMessages, Strokes) {

@@ -13,6 +13,7 @@ OperatorType combine_operator();
 OperatorType smooth_operator();
 OperatorType sharpen_operator();
 OperatorType filter_operator();
+OperatorType equalize_operator();
 OperatorType flatten_operator();
 OperatorType paint_operator();
 OperatorType rotate_operator();
