@@ -45,6 +45,11 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
   {"operator": "equalize", "view": "front",
    "options": {"sigma": 0.01, "gains": [0, 1.5, -2], "base_gain": 0.5, "area": "inside",
                "feather": 0.07},
+   "strokes": [[[0, 0], [1, 1], [0, 1]]]},
+  {"operator": "transplant", "view": "right",
+   "options": {"image": "cone.png", "size": 0.4, "repeat": true, "relief": 3, "rotation": 30,
+               "scale_x": -2, "scale_y": 0.5, "shear": -1, "heights": "grow", "border": 0.2,
+               "sigma": 0.03, "area": "inside", "brush": 0.1, "hardness": 0.3, "feather": 0.2},
    "strokes": [[[0, 0], [1, 1], [0, 1]]]}]})";
 
 TEST(Recipe, WhatIsWrittenReadsBackTheSame) {

@@ -133,6 +133,14 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
   EXPECT_EQ(other("combine", R"({"image": "cone.png"})"),
             "r.json: edits[0].strokes must be left out for the area \"view\"; the areas \"brush\" "
             "and \"inside\" take strokes");
+  EXPECT_EQ(other("transplant", R"({"sigma": 1})"),
+            "r.json: edits[0].options.image is missing; it must be a text");
+  EXPECT_EQ(other("transplant", R"({"image": "cone.png"})"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000");
+  EXPECT_EQ(other("transplant", R"({"image": "", "sigma": 1})"),
+            "r.json: edits[0].options.image must be the name of a file, not the text \"\"");
+  EXPECT_EQ(other("transplant", R"({"image": "x.png", "sigma": 1})"),
+            "r.json: edits[0].options.image: x.png: cannot be read: there is no such file");
   EXPECT_EQ(other("text", R"({"text": "", "size": 1, "height": 1, "bevel": 1})"),
             "r.json: edits[0].options.text must be a text that is not empty, not the text \"\"");
   EXPECT_EQ(other("smooth", R"({"sigma": 1, "area": "brush"})"),

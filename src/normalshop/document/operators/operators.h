@@ -10,6 +10,7 @@ OperatorType trim_operator();
 OperatorType stamp_operator();
 OperatorType text_operator();
 OperatorType combine_operator();
+OperatorType transplant_operator();
 OperatorType smooth_operator();
 OperatorType sharpen_operator();
 OperatorType filter_operator();
