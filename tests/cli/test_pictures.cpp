@@ -113,6 +113,29 @@ TEST_F(Pictures, ListsOfNumbersHaveCommas) {
       {"--gains[1] must be a number from -100 to 100", "200"});
 }
 
+TEST_F(Pictures, KernelsComeFromFiles) {
+  write_file(folder_ / "blur.json", "[[1, 1, 1], [1, 1, 1], [1, 1, 1]]");
+  write_file(folder_ / "edge.json", "[[1, 0, -1]]");
+  write_file(folder_ / "broken.json", "[[1, 0, -1], [1, 2], [1, 0, 1]]");
+  good({"convolve", path("normal.png"), "--kernel", path("blur.json"), "--normalize", "true", "-o",
+        path("verb.png")});
+  write_file(folder_ / "convolve.json", R"({"version": 1, "edits": [{"operator": "convolve",
+      "view": "front", "options": {"kernel": "blur.json", "normalize": true}}]})");
+  good({"edit", "--normals", path("normal.png"), "--recipe", path("convolve.json"), "-o",
+        path("out")});
+  EXPECT_TRUE(same_codes(image("out/normal.png"), image("verb.png")));
+  EXPECT_FALSE(same_codes(image("normal.png"), image("verb.png")));
+  const auto refuse = [&](const std::string& kernel, const std::vector<std::string>& names) {
+    bad({"convolve", path("normal.png"), "--kernel", path(kernel), "--normalize", "true", "-o",
+         path("o.png")},
+        2, names);
+  };
+  refuse("none.json", {"--kernel", "none.json"});
+  refuse("edge.json", {"--kernel", "sum"});
+  refuse("broken.json", {"--kernel", "broken.json: row 2"});
+  refuse("normal.png", {"--kernel", "normal.png", "JSON"});
+}
+
 TEST_F(Pictures, BitsAndGreenOfTheOutput) {
   good({"edit", "--normals", path("normal.png"), "--recipe", path("recipe.json"), "-o", path("out"),
         "--preset", "directx", "--bits", "16"});

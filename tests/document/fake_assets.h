@@ -4,6 +4,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/document/assets.h"
+#include "normalshop/document/kernel_text.h"
 
 namespace normalshop::test {
 
@@ -24,6 +25,15 @@ class FakeAssets : public Assets {
       }
     }
     return patch;
+  }
+  /// "blur.json", "edge.json", which has a sum of 0, "shift.json" (two pixels to the right), and
+  /// "broken.json", which is none.
+  Image<float> kernel(const std::string& file) override {
+    if (file == "blur.json") return parse_kernel("[[1, 2, 1], [2, 4, 2], [1, 2, 1]]", file);
+    if (file == "edge.json") return parse_kernel("[[0.5, 0, -0.5]]", file);
+    if (file == "shift.json") return parse_kernel("[[0, 0, 0, 0, 1]]", file);
+    if (file == "broken.json") return parse_kernel("[[1, 2, 1], [2, 4], [1, 2, 1]]", file);
+    throw IoError(file + ": cannot be read: there is no such file");
   }
   Outline text(const std::string&, const std::string& font) override {
     if (!font.empty()) throw IoError(font + ": cannot be read: there is no such file");

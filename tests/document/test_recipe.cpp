@@ -46,6 +46,10 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
    "options": {"sigma": 0.01, "gains": [0, 1.5, -2], "base_gain": 0.5, "area": "inside",
                "feather": 0.07},
    "strokes": [[[0, 0], [1, 1], [0, 1]]]},
+  {"operator": "convolve", "view": "front",
+   "options": {"kernel": "blur.json", "normalize": true, "pixel": 0.01, "area": "brush",
+               "brush": 0.4},
+   "strokes": [[[0, 0], [1, 1]]]},
   {"operator": "transplant", "view": "right",
    "options": {"image": "cone.png", "size": 0.4, "repeat": true, "relief": 3, "rotation": 30,
                "scale_x": -2, "scale_y": 0.5, "shear": -1, "heights": "grow", "border": 0.2,
@@ -126,7 +130,8 @@ TEST(Recipe, FieldsThatDescribeCallsRequiredAreRequired) {
         const std::string& name = *other.find("name")->text();
         if (other.find("required") == nullptr || name == *field.find("name")->text()) continue;
         const std::string& type_of = *other.find("type")->text();
-        options.emplace_back(name, type_of == "text"      ? Value("cone.png")
+        options.emplace_back(name, type_of == "text"
+                                       ? Value(name == "kernel" ? "blur.json" : "cone.png")
                                    : type_of == "numbers" ? Value(Value::Array{1})
                                                           : Value(1));
       }

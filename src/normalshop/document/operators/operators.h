@@ -15,6 +15,7 @@ OperatorType smooth_operator();
 OperatorType sharpen_operator();
 OperatorType filter_operator();
 OperatorType equalize_operator();
+OperatorType convolve_operator();
 OperatorType flatten_operator();
 OperatorType paint_operator();
 OperatorType rotate_operator();
