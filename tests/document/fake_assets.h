@@ -8,12 +8,13 @@
 
 namespace normalshop::test {
 
-/// The patches "cone.png" and "wave.png", which tiles sideways, and, for every text, one square
-/// letter of half an em around the origin.
+/// The patches "cone.png", "wave.png", which tiles sideways, and "slanted.png", a plane with fine
+/// waves; some kernels; and, for every text, one square letter of half an em around the origin.
 class FakeAssets : public Assets {
  public:
   Patch patch(const std::string& file) override {
     if (file == "wave.png") return wave();
+    if (file == "slanted.png") return slanted();
     if (file != "cone.png") throw IoError(file + ": cannot be read: there is no such file");
     constexpr int size = 32;
     Patch patch{SlopeImage(size, size), MaskImage(size, size), {}};
@@ -41,6 +42,20 @@ class FakeAssets : public Assets {
   }
 
  private:
+  /// Slopes (0.8 + (-1)^(x / 2) / 10, -0.3) in a circle of 28 pixels, and more outside of it.
+  static Patch slanted() {
+    Patch patch{SlopeImage(64, 64), MaskImage(64, 64), {}};
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const Vec2f p(static_cast<float>(x) - 31.5F, static_cast<float>(y) - 31.5F);
+        const bool inside = p.norm() < 28.0F;
+        patch.opacity(x, y) = inside ? 1.0F : 0.0F;
+        patch.slopes(x, y) =
+            inside ? Vec2f(x / 2 % 2 == 0 ? 0.9F : 0.7F, -0.3F) : Vec2f(9.0F, 9.0F);
+      }
+    }
+    return patch;
+  }
   /// Slopes (cos(2 pi x), 0) / 2 over a width of 1, x from the middle.
   static Patch wave() {
     Patch patch{SlopeImage(64, 32), {}, {}};

@@ -21,7 +21,7 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
   {"operator": "stamp", "view": {"direction": [0, 0.1, 1], "up": [1, 0, 0], "center": [1, 2, 3],
                                  "width": 0.7, "height": 0.2},
    "options": {"patch": "cone.png", "size": 0.1, "relief": -2, "rotation": 33, "scale_x": -1.5,
-               "scale_y": 2, "shear": 0.2, "heights": "grow", "border": 0.3},
+               "scale_y": 2, "shear": 0.2, "heights": "grow", "border": 0.3, "high_pass": 0.2},
    "strokes": [[[0.1, 0.1]]]},
   {"operator": "text", "view": {"facing": [0.1, 0.2, 0.3], "width": 2},
    "options": {"text": "two\nlines \"quoted\"", "size": 0.1, "height": -0.01, "bevel": 0.02,

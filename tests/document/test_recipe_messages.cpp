@@ -122,6 +122,8 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "r.json: edits[0].options.patch: x.png: cannot be read: there is no such file");
   EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 1, "scale_x": 0})"),
             "r.json: edits[0].options.scale_x must be a scale that is not 0, not the number 0");
+  EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 1, "high_pass": 1.5})"),
+            "r.json: edits[0].options.high_pass must be a number from 0 to 1, not the number 1.5");
   EXPECT_EQ(other("combine", "{}"), "r.json: edits[0].options.image is missing; it must be a text");
   EXPECT_EQ(other("combine", R"({"image": ""})"),
             "r.json: edits[0].options.image must be the name of a file, not the text \"\"");
