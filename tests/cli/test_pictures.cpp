@@ -180,6 +180,83 @@ TEST_F(Pictures, SegmentsAreLabelsPicturesAndMasks) {
   EXPECT_NEAR(image("flat.png").code(size - 3, 3, 0), 127.5F, 1.0F);
 }
 
+/// A flat picture with two squares of 16 pixels that face right, and colours that tell them apart.
+void write_squares(const fs::path& normals, const fs::path& colors) {
+  RawImage codes(64, 64, 3, CodeType::U8);
+  RawImage color(64, 64, 3, CodeType::U8);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const bool left = x >= 8 && x < 24 && y >= 8 && y < 24;
+      const bool right = x >= 40 && x < 56 && y >= 40 && y < 56;
+      auto* p = codes.row<std::uint8_t>(y) + 3 * x;
+      p[0] = left || right ? 218 : 128;
+      p[1] = 128;
+      p[2] = left || right ? 218 : 255;
+      auto* c = color.row<std::uint8_t>(y) + 3 * x;
+      c[0] = c[1] = c[2] = right ? 250 : 100;
+    }
+  }
+  write_image(normals, codes);
+  write_image(colors, color);
+}
+
+TEST_F(Pictures, WandsAndLassosMakeMasks) {
+  write_squares(folder_ / "squares.png", folder_ / "colors.png");
+  const auto count = [&](Arguments arguments) {
+    arguments.insert(arguments.begin(), {"segment", path("squares.png")});
+    arguments.insert(arguments.end(), {"--mask-output", path("m.png"), "--json"});
+    const Value report = parse_json(good(arguments).out, "segment");
+    return static_cast<int>(*report.find("selected_pixels")->number());
+  };
+  const std::string color = path("colors.png");
+  EXPECT_EQ(count({"--wand=-16,16"}), 256);
+  EXPECT_EQ(image("m.png").code(10, 10, 0), 255.0F);
+  EXPECT_EQ(image("m.png").code(30, 10, 0), 0.0F);
+  EXPECT_EQ(image("m.png").code(45, 45, 0), 0.0F);
+  EXPECT_EQ(count({"--wand=-16,16", "--everywhere"}), 512);
+  EXPECT_EQ(count({"--wand=-16,16", "--everywhere", "--color", color}), 256);
+  EXPECT_EQ(count({"--wand=-16,16", "--everywhere", "--color", color, "--color-tolerance", "2"}),
+            512);
+  EXPECT_EQ(count({"--wand=-16,16", "--angle-tolerance", "60"}), 64 * 64);
+  // Union: both squares, by a wand each, by wand and lasso, and by all three.
+  EXPECT_EQ(count({"--wand=-16,16", "--wand=16,-16"}), 512);
+  const std::string lasso = "--lasso=8,-8 24,-8 24,-24 8,-24";
+  EXPECT_EQ(count({lasso}), 256);
+  EXPECT_EQ(image("m.png").code(39, 45, 0), 0.0F);
+  EXPECT_EQ(image("m.png").code(40, 45, 0), 255.0F);
+  EXPECT_EQ(image("m.png").code(55, 55, 0), 255.0F);
+  EXPECT_EQ(image("m.png").code(55, 56, 0), 0.0F);
+  EXPECT_EQ(count({"--wand=-16,16", lasso}), 512);
+  EXPECT_EQ(count({"--sigma", "0", "--select=-16,16", "--wand=16,-16", lasso}), 512);
+  // Beyond the picture's sides there is nothing to select; half a pixel is half selected.
+  EXPECT_EQ(count({"--lasso=-500,0 500,0 0,500"}), 64 * 32);
+  EXPECT_EQ(count({"--lasso=-16.5,-32 0,-32 0,32 -16.5,32"}), 17 * 64);
+  EXPECT_NEAR(image("m.png").code(15, 20, 0), 127.5F, 1.0F);
+  EXPECT_EQ(count({lasso, "--feather", "4"}), 256);
+  EXPECT_GT(image("m.png").code(39, 48, 0), 40.0F);
+}
+
+TEST_F(Pictures, WandsAndLassosRefuseWhatIsNoPoint) {
+  const auto refuse = [&](const std::string& flag, const std::vector<std::string>& names) {
+    bad({"segment", path("normal.png"), flag, "--mask-output", path("m.png")}, 1, names);
+  };
+  refuse("--wand=40,0", {"40,0", "x from -32 to 32", "y up"});
+  refuse("--wand=nan,0", {"nan,0", "x,y"});
+  refuse("--wand=1 2", {"1 2", "x,y"});
+  const std::vector<std::string> lasso = {"lasso", "at least 3 points x,y", "y up"};
+  for (const std::string points : {"1,1 2,2", "1,1 2,2 3", "1,1 2,2 3,x", "1,1 2,2 inf,0",
+                                   "1,1 2,2 1e30,0", "1,1;2,2;3,3", " "}) {
+    refuse("--lasso=" + points, lasso);
+  }
+  bad({"segment", path("normal.png"), "--wand", "1,1", "-o", path("l.png")}, 1,
+      {"need a file for the mask"});
+  bad({"segment", path("normal.png"), "--mask-output", path("m.png")}, 1,
+      {"needs places, wands or lassos"});
+  bad({"segment", path("normal.png"), "--wand", "1,1", "--angle-tolerance", "200", "--mask-output",
+       path("m.png")},
+      1, {"angle_tolerance", "180"});
+}
+
 TEST_F(Pictures, ShadeLightsFromWhereItIsTold) {
   write_image(folder_ / "tilted.png", tilted_map(16, 40.0, CodeType::U8));  // towards +x
   good(
