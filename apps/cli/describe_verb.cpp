@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <string>
 
+#include "shade_styles.h"
 #include "verbs.h"
 
 #include "normalshop/document/edit_operator.h"
@@ -10,6 +11,7 @@ namespace normalshop::cli {
 namespace {
 
 struct DescribeFlags {
+  bool styles = false;
   bool json = false;
 };
 
@@ -33,11 +35,14 @@ std::string remarks_of(const Value& field) {
   return text;
 }
 
-void print_text() {
-  const Value described = describe_operators();
+void print_text(const Value& described) {
   for (const Value& type : *described.array()) {
-    std::printf("%s: %s.\n  strokes: %s\n", type.find("operator")->text()->c_str(),
-                type.find("summary")->text()->c_str(), type.find("strokes")->text()->c_str());
+    const Value* name = type.find("operator");
+    if (name == nullptr) name = type.find("style");
+    std::printf("%s: %s.\n", name->text()->c_str(), type.find("summary")->text()->c_str());
+    if (const Value* strokes = type.find("strokes")) {
+      std::printf("  strokes: %s\n", strokes->text()->c_str());
+    }
     for (const Value& field : *type.find("options")->array()) {
       std::printf("  %-12s %s (%s)\n", field.find("name")->text()->c_str(),
                   field.find("help")->text()->c_str(), remarks_of(field).c_str());
@@ -47,10 +52,11 @@ void print_text() {
 }
 
 void run_describe(const DescribeFlags& flags) {
+  const Value described = flags.styles ? describe_styles() : describe_operators();
   if (flags.json) {
-    std::fputs(to_json(describe_operators()).c_str(), stdout);
+    std::fputs(to_json(described).c_str(), stdout);
   } else {
-    print_text();
+    print_text(described);
   }
 }
 
@@ -59,6 +65,7 @@ void run_describe(const DescribeFlags& flags) {
 void add_describe_verb(CommandLine& program) {
   Verb verb = program.verb("describe", "Lists the operators and their options");
   DescribeFlags& flags = verb.runs(run_describe);
+  verb.flag("--styles", flags.styles, "The styles of shade and what --set sets, instead");
   verb.flag("--json", flags.json, "As JSON");
 }
 

@@ -1,3 +1,5 @@
+#include <array>
+#include <cmath>
 #include <cstring>
 
 #include "../io/temp_folder.h"
@@ -278,6 +280,61 @@ TEST_F(Pictures, ShadeLightsFromWhereItIsTold) {
       {"NAME=VALUE"});
   bad({"shade", path("normal.png"), "--light", "1,2", "-o", path("o.png")}, 2,
       {"--light", "x,y,z"});
+}
+
+/// A ball of radius 20 before a wall that faces the viewer.
+RawImage ball_map(int size) {
+  RawImage codes(size, size, 3, CodeType::U16);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const double u = x + 0.5 - 0.5 * size;
+      const double v = 0.5 * size - y - 0.5;
+      const double z = std::sqrt(std::max(0.0, 400.0 - u * u - v * v));
+      const bool ball = z > 0.0;
+      const std::array<double, 3> n{ball ? u / 20.0 : 0.0, ball ? v / 20.0 : 0.0,
+                                    ball ? z / 20.0 : 1.0};
+      for (int c = 0; c < 3; ++c) {
+        codes.row<std::uint16_t>(y)[3 * x + c] =
+            static_cast<std::uint16_t>(std::lround(65535.0 * 0.5 * (n[c] + 1.0)));
+      }
+    }
+  }
+  return codes;
+}
+
+TEST_F(Pictures, EdgesThrowShadowsAwayFromTheLight) {
+  write_image(folder_ / "ball.png", ball_map(size));
+  for (const std::string style : {"lit", "matte", "toon", "lines", "curvature", "exaggerated"}) {
+    const Arguments shade{"shade", path("ball.png"), "--style", style, "--light=-1,0,1", "-o"};
+    const auto shaded = [&](const std::string& name, const std::string& length) {
+      Arguments all = shade;
+      all.insert(all.end(), {path(name), "--edge-shadows", length});
+      good(all);
+      return image(name);
+    };
+    const RawImage without = shaded("without.png", "0");
+    const RawImage with = shaded("with.png", "10");
+    // Right of the ball, which ends at column 52; left of it and far off nothing changes.
+    EXPECT_LT(with.code(54, 32, 1), without.code(54, 32, 1) - 8.0F) << style;
+    EXPECT_LE(with.code(54, 32, 1), with.code(58, 32, 1)) << style;
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < 20; ++x) {
+        ASSERT_EQ(with.code(x, y, 1), without.code(x, y, 1)) << style << " " << x << ", " << y;
+      }
+    }
+    EXPECT_EQ(with.code(63, 63, 1), without.code(63, 63, 1)) << style;
+  }
+  // The style's own light decides where there is no --light; one before the picture casts none.
+  good({"shade", path("ball.png"), "--style", "toon", "--set", "azimuth=0", "--edge-shadows", "10",
+        "-o", path("right.png")});
+  EXPECT_LT(image("right.png").code(9, 32, 1), image("right.png").code(54, 32, 1) - 8.0F);
+  good({"shade", path("ball.png"), "--style", "matte", "--light", "0,0,1", "--edge-shadows", "10",
+        "-o", path("front.png")});
+  EXPECT_EQ(image("front.png").code(54, 32, 1), image("front.png").code(2, 2, 1));
+  for (const std::string length : {"-1", "5000", "nan"}) {
+    bad({"shade", path("ball.png"), "--edge-shadows=" + length, "-o", path("o.png")}, 1,
+        {"length must be a number from 0 to 1000"});
+  }
 }
 
 TEST_F(Pictures, WrongUseIsOneSentence) {
