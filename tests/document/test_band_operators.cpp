@@ -150,6 +150,35 @@ TEST(TransplantOperator, HalfTheStrengthGoesHalfTheWay) {
   EXPECT_LT(farthest(half, middle), 1e-6F);
 }
 
+/// The part of a picture that an edit looks at is as wide as it reads.
+TEST(BandOperators, APartIsThatOfTheWhole) {
+  const SlopeImage source = sum_of(waves(160, 160, 3, 0.2F), waves(160, 160, 33, 0.2F));
+  const auto difference = [&](const std::string& one) {
+    ImageDocument whole = picture(source);
+    ImageDocument part = picture(source);
+    whole.apply(edit(one + "}"));
+    part.apply(edit(one + R"(, "area": "inside", "feather": 1},
+        "strokes": [[[-8, -8], [8, -8], [8, 8], [-8, 8]]])"));
+    EXPECT_FALSE(part.normals().edited(20, 20));
+    float most = 0.0F;
+    for (int y = 76; y < 84; ++y) {
+      for (int x = 76; x < 84; ++x) {
+        most = std::max(most, (part.normals().normal(x, y) - whole.normals().normal(x, y)).norm());
+      }
+    }
+    return most;
+  };
+  const std::string equalize = R"("operator": "equalize", "view": "front", "options": {)";
+  const std::string transplant = R"("operator": "transplant", "view": "front",
+      "options": {"image": "wave.png", "repeat": true, "size": 32, )";
+  EXPECT_EQ(difference(equalize + R"("sigma": 1.5, "gains": [0, 3])"), 0.0F);
+  EXPECT_EQ(difference(transplant + R"("sigma": 3)"), 0.0F);
+  // Wide Gaussians see points that are counted from the part's corner: their error is 1e-4 of a
+  // wave.
+  EXPECT_LT(difference(equalize + R"("sigma": 3, "gains": [0, 1, 2])"), 4e-5F);
+  EXPECT_LT(difference(transplant + R"("sigma": 9)"), 4e-5F);
+}
+
 /// On a mesh sizes are lengths. Waves of 0.16 hardly pass a Gaussian of 0.1.
 TEST(TransplantOperator, ReplacesTheDetailsOfAMesh) {
   for (const std::string details : {"keep", "ignore"}) {
