@@ -24,10 +24,11 @@ struct Spread {
 
 Spread make_spread(int side, double scale) {
   const double half = std::max(scale, 1.0);
-  const int radius = static_cast<int>(resampled_reach(side / 2, scale));
+  const int middle = side / 2;
+  const int radius = static_cast<int>(resampled_reach(middle, scale));
   Spread spread{side, 2 * radius + 1, {}};
   for (int i = 0; i < side; ++i) {
-    const double place = (i - side / 2) * scale;
+    const double place = (i - middle) * scale;
     std::vector<double> row;
     double sum = 0.0;
     for (int o = -radius; o <= radius; ++o) {
