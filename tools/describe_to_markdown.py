@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""The tables of docs/recipes.md from what the program says of its operators.
+"""The tables of docs/recipes.md from what the program says of its operators, and those of
+docs/pictures.md from what it says of its styles.
 
     normalshop describe --json | tools/describe_to_markdown.py            prints the tables
     normalshop describe --json | tools/describe_to_markdown.py --write F  puts them into F
     tools/describe_to_markdown.py --run PROGRAM --check F                 fails when F is out of date
+    tools/describe_to_markdown.py --run PROGRAM --with "A B" --check F    with the arguments A and B
 
 The tables stand between two marker lines in the file.
 """
@@ -13,8 +15,8 @@ import json
 import subprocess
 import sys
 
-BEGIN = "<!-- operators: written by tools/describe_to_markdown.py -->"
-END = "<!-- end of operators -->"
+BEGIN = "<!-- {kind}s: written by tools/describe_to_markdown.py -->"
+END = "<!-- end of {kind}s -->"
 
 
 def cell(text):
@@ -47,17 +49,23 @@ def accepted(field):
     if "range" in field:
         low, high = field["range"]
         unit = {"1": "", "length": ", length"}.get(field.get("unit", ""), ", " + field.get("unit", ""))
-        return f"{number(low)} to {number(high)}{unit}"
+        each = "list of numbers from " if kind == "numbers" else ""
+        return f"{each}{number(low)} to {number(high)}{unit}"
     return kind
 
 
+def kind_of(entry):
+    return "operator" if "operator" in entry else "style"
+
+
 def table(operator):
-    yield f"### {operator['operator']}"
+    yield f"### {operator[kind_of(operator)]}"
     yield ""
     yield operator["summary"] + "."
     yield ""
-    yield "Strokes: " + operator["strokes"] + "."
-    yield ""
+    if "strokes" in operator:
+        yield "Strokes: " + operator["strokes"] + "."
+        yield ""
     yield "| option | accepted | default | |"
     yield "| --- | --- | --- | --- |"
     for field in operator["options"]:
@@ -71,43 +79,48 @@ def operators_of(described):
 
 
 def tables(described):
-    blocks = ["\n".join(table(operator)) for operator in operators_of(described)]
+    blocks = ["\n".join(table(entry)) for entry in described]
     return "\n\n".join(blocks)
 
 
-def replaced(document, text):
-    before, mark, rest = document.partition(BEGIN)
-    _, end, after = rest.partition(END)
+def replaced(document, text, kind):
+    begin = BEGIN.format(kind=kind)
+    finish = END.format(kind=kind)
+    before, mark, rest = document.partition(begin)
+    _, end, after = rest.partition(finish)
     if not mark or not end:
-        sys.exit(f"the file has no lines {BEGIN} and {END}")
-    return f"{before}{BEGIN}\n\n{text}\n\n{END}{after}"
+        sys.exit(f"the file has no lines {begin} and {finish}")
+    return f"{before}{begin}\n\n{text}\n\n{finish}{after}"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--run", help="program that prints the JSON; else it is read from stdin")
+    parser.add_argument("--with", dest="arguments", default="", metavar="ARGUMENTS",
+                        help="what the program is run with")
     parser.add_argument("--write", metavar="FILE")
     parser.add_argument("--check", metavar="FILE")
     arguments = parser.parse_args()
     source = (
-        subprocess.run([arguments.run], check=True, capture_output=True, text=True).stdout
+        subprocess.run([arguments.run, *arguments.arguments.split()], check=True, capture_output=True, text=True).stdout
         if arguments.run
         else sys.stdin.read()
     )
-    text = tables(json.loads(source))
+    described = operators_of(json.loads(source))
+    text = tables(described)
     path = arguments.write or arguments.check
     if path is None:
         print(text)
         return
     with open(path, encoding="utf-8") as file:
         document = file.read()
-    wanted = replaced(document, text)
+    wanted = replaced(document, text, kind_of(described[0]))
     if arguments.write:
         with open(path, "w", encoding="utf-8") as file:
             file.write(wanted)
     elif wanted != document:
         sys.exit(f"{path} does not say what the program says; "
-                 f"run: normalshop describe --json | tools/describe_to_markdown.py --write {path}")
+                 f"run: normalshop describe {'' if kind_of(described[0]) == 'operator' else '--styles '}--json | tools/describe_to_markdown.py --write {path}")
 
 
 if __name__ == "__main__":

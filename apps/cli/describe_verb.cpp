@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <string>
 
+#include "shade_styles.h"
 #include "verbs.h"
 
 #include "normalshop/document/edit_operator.h"
@@ -11,6 +12,7 @@ namespace {
 
 struct DescribeFlags {
   std::string operation;  ///< empty: all
+  bool styles = false;
   bool json = false;
 };
 
@@ -46,8 +48,12 @@ Value described(const std::string& operation) {
 
 void print_text(const Value& described) {
   for (const Value& type : *described.array()) {
-    std::printf("%s: %s.\n  strokes: %s\n", type.find("operator")->text()->c_str(),
-                type.find("summary")->text()->c_str(), type.find("strokes")->text()->c_str());
+    const Value* name = type.find("operator");
+    if (name == nullptr) name = type.find("style");
+    std::printf("%s: %s.\n", name->text()->c_str(), type.find("summary")->text()->c_str());
+    if (const Value* strokes = type.find("strokes")) {
+      std::printf("  strokes: %s\n", strokes->text()->c_str());
+    }
     for (const Value& field : *type.find("options")->array()) {
       std::printf("  %-12s %s (%s)\n", field.find("name")->text()->c_str(),
                   field.find("help")->text()->c_str(), remarks_of(field).c_str());
@@ -57,7 +63,7 @@ void print_text(const Value& described) {
 }
 
 void run_describe(const DescribeFlags& flags) {
-  const Value description = described(flags.operation);
+  const Value description = flags.styles ? describe_styles() : described(flags.operation);
   if (flags.json) {
     std::fputs(to_json(description).c_str(), stdout);
   } else {
@@ -73,6 +79,7 @@ void add_describe_verb(CommandLine& program) {
   std::vector<std::string> names;
   for (const OperatorType& type : operator_types()) names.emplace_back(type.name);
   verb.takes("operator", flags.operation, "One of them (all unless given)").one_of(names);
+  verb.flag("--styles", flags.styles, "The styles of shade and what --set sets, instead");
   verb.flag("--json", flags.json, "As JSON");
 }
 

@@ -29,6 +29,20 @@ struct OperatorFlags {
 
 std::string flag_of(const Value& field) { return "--" + *field.find("name")->text(); }
 
+/// "1,2,3"; what is no list of numbers stays a text.
+Value number_list(std::string_view text) {
+  Value::Array numbers;
+  std::size_t from = 0;
+  while (from <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const auto number = read_number(text.substr(from, comma - from));
+    if (!number) return text;
+    numbers.emplace_back(*number);
+    from = comma + 1;
+  }
+  return numbers;
+}
+
 /// As recipes have it. What does not look like its type stays a text, which the operator refuses in
 /// its own words.
 Value option_value(const Value& field, const std::string& text) {
@@ -38,6 +52,7 @@ Value option_value(const Value& field, const std::string& text) {
   }
   if (type == "switch" && (text == "true" || text == "false")) return text == "true";
   if (type == "curve") return parse_json(text, flag_of(field));
+  if (type == "numbers") return number_list(text);
   return text;
 }
 
@@ -142,6 +157,7 @@ std::string help_of(const Value& field) {
     const std::string& name = *unit->text();
     if (name != "1") add(name == "length" ? "pixels" : name);
   }
+  if (*field.find("type")->text() == "numbers") add("numbers with commas between them");
   if (const Value* range = field.find("range")) {
     add(to_line((*range->array())[0]) + " to " + to_line((*range->array())[1]));
   }

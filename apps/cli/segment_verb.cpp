@@ -12,16 +12,24 @@ namespace {
 struct SegmentFlags {
   ImageFlags image;
   SegmentJobOptions job;
+  bool everywhere = false;
   bool json = false;
 };
 
 void run_segment(const SegmentFlags& flags) {
-  const Value report = segment_image(flags.image.open(), flags.job);
+  SegmentJobOptions job = flags.job;
+  job.wand.contiguous = !flags.everywhere;
+  const Value report = segment_image(flags.image.open(), job);
   if (flags.json) {
     std::fputs(to_json(report).c_str(), stdout);
     return;
   }
-  std::printf("%.0f segments\n", *report.find("segments")->number());
+  if (const Value* count = report.find("segments")) {
+    std::printf("%.0f segments\n", *count->number());
+  }
+  if (const Value* count = report.find("selected_pixels")) {
+    std::printf("%.0f pixels selected\n", *count->number());
+  }
   for (const Value& file : *report.find("files")->array()) {
     std::printf("wrote %s\n", file.text()->c_str());
   }
@@ -41,7 +49,21 @@ void add_segment_verb(CommandLine& program) {
   verb.takes("--select", flags.job.selected,
              "x,y in pixels from the picture's middle, y up: the "
              "region there becomes the mask; may be repeated");
-  verb.takes("--mask-output", flags.job.mask, "Grey PNG of the regions that --select names");
+  verb.takes("--wand", flags.job.wands,
+             "x,y likewise: what hangs together with the pixel there and is like it becomes the "
+             "mask; may be repeated");
+  verb.takes("--angle-tolerance", flags.job.wand.angle_tolerance,
+             "Of the wand: largest angle between normals in degrees; 0 equal ones, 180 all")
+      .shows_default();
+  verb.takes("--color-tolerance", flags.job.wand.color_tolerance,
+             "Of the wand: largest distance between linear colours; 0 equal ones, 1e6 all")
+      .shows_default();
+  verb.flag("--everywhere", flags.everywhere,
+            "The wand takes all that is like the pixel, wherever it lies");
+  verb.takes("--lasso", flags.job.lassos,
+             "\"x,y x,y x,y ...\" likewise: what lies inside becomes the mask; may be repeated");
+  verb.takes("--mask-output", flags.job.mask,
+             "Grey PNG of all that --select, --wand and --lasso select");
   verb.takes("--feather", flags.job.feather, "Width of the mask's soft border in pixels");
   verb.takes("--coarseness", options.coarseness, "Larger: fewer, larger regions").shows_default();
   verb.takes("--min-size", options.min_size, "Smaller regions join a neighbour; in pixels")

@@ -8,8 +8,10 @@
 #include "verbs.h"
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/document/option_values.h"
 #include "normalshop/io/image_file.h"
+#include "normalshop/rgbn/discontinuity_shadow.h"
 #include "normalshop/rgbn/project.h"
 #include "normalshop/rgbn/shade.h"
 #include "normalshop/rgbn/shade_curvature.h"
@@ -37,6 +39,7 @@ struct ShadeFlags {
   Material material;
   float exposure = 1.0F;
   float shadows = 0.0F;
+  float edge_shadows = 0.0F;
 };
 
 /// One light: the key of the studio. Several: these alone, sharing the light of one.
@@ -78,6 +81,34 @@ SelfShade self_shade(const ImageDocument& document, float reach, const Vec3f& ke
   return out;
 }
 
+Vec2f towards(float azimuth) {
+  constexpr float radian = 3.14159265F / 180.0F;
+  return {std::cos(radian * azimuth), std::sin(radian * azimuth)};
+}
+
+/// 1 lit, less behind edges where something stands before what lies behind; `light` points towards
+/// the light in the picture. Empty: 1 everywhere, as under a light that stands before the picture.
+MaskImage edge_shadow(ImageView<Vec3f> normals, float length, const Vec2f& light) {
+  if (length == 0.0F || light.norm() < 1e-6F) return {};
+  DiscontinuityShadowOptions options;
+  options.length = length;
+  options.azimuth = std::atan2(light.y(), light.x()) * 180.0F / 3.14159265F;
+  MaskImage lit(normals.width(), normals.height());
+  discontinuity_shadow(normals, lit, lit.rect(), options);
+  return lit;
+}
+
+MaskImage darker(MaskImage a, const MaskImage& b) {
+  if (a.empty() || b.empty()) return a.empty() ? b : a;
+  for_pixels(a.rect(), [&](int x, int y) { a(x, y) = std::min(a(x, y), b(x, y)); });
+  return a;
+}
+
+void darken(ColorSpan picture, const MaskImage& lit) {
+  if (lit.empty()) return;
+  for_pixels(picture.rect(), [&](int x, int y) { picture(x, y) *= lit(x, y); });
+}
+
 /// The defaults, and what "bands=4" says instead.
 Value style_options(const Value& defaults, const std::vector<std::string>& settings) {
   Value::Object fields = *defaults.object();
@@ -116,25 +147,50 @@ Options read_style(const ShadeFlags& flags) {
   return options;
 }
 
-void shade_in_style(ShadeStyle style, const ShadeFlags& flags, ImageView<Vec3f> normals,
-                    ColorView colors, ColorSpan picture) {
+/// Where the light of a style stands in the picture: as --light says, else as the style's options
+/// do, else the upper left.
+template <class Options>
+Vec2f style_light(const Options& style, const ShadeFlags& flags) {
+  if (!flags.lights.empty()) return parse_vector(flags.lights.front(), "--light").head<2>();
+  if constexpr (std::is_base_of_v<LightDirection, Options>) return towards(style.azimuth);
+  return towards(LightDirection{}.azimuth);
+}
+
+/// Returns where the style's light stands in the picture.
+Vec2f shade_in_style(ShadeStyle style, const ShadeFlags& flags, ImageView<Vec3f> normals,
+                     ColorView colors, ColorSpan picture) {
   const Rect all = picture.rect();
   switch (style) {
-    case ShadeStyle::Toon:
-      shade_toon(normals, colors, picture, all, read_style<ToonOptions>(flags));
-      break;
-    case ShadeStyle::Lines:
-      shade_lines(normals, picture, all, read_style<LineOptions>(flags));
-      break;
-    case ShadeStyle::Curvature:
-      shade_curvature(normals, colors, picture, all, read_style<CurvatureShadeOptions>(flags));
-      break;
-    case ShadeStyle::Exaggerated:
-      shade_exaggerated(normals, colors, picture, all, read_style<ExaggeratedOptions>(flags));
-      break;
-    default:
-      break;
+    case ShadeStyle::Toon: {
+      const auto options = read_style<ToonOptions>(flags);
+      shade_toon(normals, colors, picture, all, options);
+      return style_light(options, flags);
+    }
+    case ShadeStyle::Lines: {
+      const auto options = read_style<LineOptions>(flags);
+      shade_lines(normals, picture, all, options);
+      return style_light(options, flags);
+    }
+    case ShadeStyle::Curvature: {
+      const auto options = read_style<CurvatureShadeOptions>(flags);
+      shade_curvature(normals, colors, picture, all, options);
+      return style_light(options, flags);
+    }
+    default: {
+      const auto options = read_style<ExaggeratedOptions>(flags);
+      shade_exaggerated(normals, colors, picture, all, options);
+      return style_light(options, flags);
+    }
   }
+}
+
+/// Lit by a studio's lights; the edges' shadows are the first light's.
+void shade_lit(const ShadeFlags& flags, const ShadeOptions& options, const ImageDocument& document,
+               ImageView<Vec3f> normals, ColorSpan picture) {
+  const Vec3f key = options.lights.front().direction;
+  const SelfShade self = self_shade(document, flags.shadows, key);
+  const MaskImage edges = edge_shadow(normals, flags.edge_shadows, key.head<2>());
+  shade(normals, document.colors(), self.occlusion, darker(self.shadow, edges), picture, options);
 }
 
 void run_shade(const ShadeFlags& flags) {
@@ -148,13 +204,14 @@ void run_shade(const ShadeFlags& flags) {
   ShadeStyle style{};
   from_name(flags.style, style);
   if (style == ShadeStyle::Lit) {
-    const SelfShade self =
-        self_shade(opened.document, flags.shadows, options.lights.front().direction);
-    shade(normals, colors, self.occlusion, self.shadow, picture, options);
+    shade_lit(flags, options, opened.document, normals, picture);
   } else if (style == ShadeStyle::Matte) {
     shade_lambert(normals, colors, picture, picture.rect(), {options.lights, options.sky});
+    const Vec2f light = options.lights.front().direction.head<2>();
+    darken(picture, edge_shadow(normals, flags.edge_shadows, light));
   } else {
-    shade_in_style(style, flags, normals, colors, picture);
+    const Vec2f light = shade_in_style(style, flags, normals, colors, picture);
+    darken(picture, edge_shadow(normals, flags.edge_shadows, light));
   }
   write_png_srgb(flags.output, picture);
   print_notes(opened.notes);
@@ -173,7 +230,8 @@ void add_shade_verb(CommandLine& program) {
       .one_of({"lit", "matte", "toon", "lines", "curvature", "exaggerated"})
       .shows_default();
   verb.takes("--set", flags.options,
-             "NAME=VALUE of an option of toon, lines, curvature or exaggerated; may be repeated");
+             "NAME=VALUE of an option of toon, lines, curvature or exaggerated, which describe "
+             "--styles lists; may be repeated");
   verb.takes("--light", flags.lights,
              "Direction x,y,z towards the light: x right, y up, z towards the viewer; may be "
              "repeated, then these lights alone shine");
@@ -183,6 +241,10 @@ void add_shade_verb(CommandLine& program) {
   verb.takes("--exposure", flags.exposure, "Multiplies the light").shows_default();
   verb.takes("--shadows", flags.shadows,
              "Pixels that shadows and occlusion reach, from the height that fits best; 0 none")
+      .shows_default();
+  verb.takes("--edge-shadows", flags.edge_shadows,
+             "Pixels that shadows reach behind edges in depth, in every style, away from the first "
+             "--light; 0 none [0 to 1000]")
       .shows_default();
   flags.image.add_green(verb);
 }

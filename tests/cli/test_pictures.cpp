@@ -1,3 +1,5 @@
+#include <array>
+#include <cmath>
 #include <cstring>
 
 #include "../io/temp_folder.h"
@@ -96,6 +98,46 @@ TEST_F(Pictures, EveryOperatorIsAVerbWithItsOptions) {
   }
 }
 
+TEST_F(Pictures, ListsOfNumbersHaveCommas) {
+  good({"equalize", path("normal.png"), "--sigma", "1", "--gains", "0,1.5,-1", "-o",
+        path("verb.png")});
+  write_file(folder_ / "equalize.json", R"({"version": 1, "edits": [{"operator": "equalize",
+      "view": "front", "options": {"sigma": 1, "gains": [0, 1.5, -1]}}]})");
+  good({"edit", "--normals", path("normal.png"), "--recipe", path("equalize.json"), "-o",
+        path("out")});
+  EXPECT_TRUE(same_codes(image("out/normal.png"), image("verb.png")));
+  EXPECT_FALSE(same_codes(image("normal.png"), image("verb.png")));
+  for (const std::string gains : {"1;2", "", "1,,2", "1,x"}) {
+    bad({"equalize", path("normal.png"), "--sigma", "1", "--gains", gains, "-o", path("o.png")}, 2,
+        {"--gains"});
+  }
+  bad({"equalize", path("normal.png"), "--sigma", "1", "--gains", "1,200", "-o", path("o.png")}, 2,
+      {"--gains[1] must be a number from -100 to 100", "200"});
+}
+
+TEST_F(Pictures, KernelsComeFromFiles) {
+  write_file(folder_ / "blur.json", "[[1, 1, 1], [1, 1, 1], [1, 1, 1]]");
+  write_file(folder_ / "edge.json", "[[1, 0, -1]]");
+  write_file(folder_ / "broken.json", "[[1, 0, -1], [1, 2], [1, 0, 1]]");
+  good({"convolve", path("normal.png"), "--kernel", path("blur.json"), "--normalize", "true", "-o",
+        path("verb.png")});
+  write_file(folder_ / "convolve.json", R"({"version": 1, "edits": [{"operator": "convolve",
+      "view": "front", "options": {"kernel": "blur.json", "normalize": true}}]})");
+  good({"edit", "--normals", path("normal.png"), "--recipe", path("convolve.json"), "-o",
+        path("out")});
+  EXPECT_TRUE(same_codes(image("out/normal.png"), image("verb.png")));
+  EXPECT_FALSE(same_codes(image("normal.png"), image("verb.png")));
+  const auto refuse = [&](const std::string& kernel, const std::vector<std::string>& names) {
+    bad({"convolve", path("normal.png"), "--kernel", path(kernel), "--normalize", "true", "-o",
+         path("o.png")},
+        2, names);
+  };
+  refuse("none.json", {"--kernel", "none.json"});
+  refuse("edge.json", {"--kernel", "sum"});
+  refuse("broken.json", {"--kernel", "broken.json: row 2"});
+  refuse("normal.png", {"--kernel", "normal.png", "JSON"});
+}
+
 TEST_F(Pictures, BitsAndGreenOfTheOutput) {
   good({"edit", "--normals", path("normal.png"), "--recipe", path("recipe.json"), "-o", path("out"),
         "--preset", "directx", "--bits", "16"});
@@ -140,6 +182,83 @@ TEST_F(Pictures, SegmentsAreLabelsPicturesAndMasks) {
   EXPECT_NEAR(image("flat.png").code(size - 3, 3, 0), 127.5F, 1.0F);
 }
 
+/// A flat picture with two squares of 16 pixels that face right, and colours that tell them apart.
+void write_squares(const fs::path& normals, const fs::path& colors) {
+  RawImage codes(64, 64, 3, CodeType::U8);
+  RawImage color(64, 64, 3, CodeType::U8);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const bool left = x >= 8 && x < 24 && y >= 8 && y < 24;
+      const bool right = x >= 40 && x < 56 && y >= 40 && y < 56;
+      auto* p = codes.row<std::uint8_t>(y) + 3 * x;
+      p[0] = left || right ? 218 : 128;
+      p[1] = 128;
+      p[2] = left || right ? 218 : 255;
+      auto* c = color.row<std::uint8_t>(y) + 3 * x;
+      c[0] = c[1] = c[2] = right ? 250 : 100;
+    }
+  }
+  write_image(normals, codes);
+  write_image(colors, color);
+}
+
+TEST_F(Pictures, WandsAndLassosMakeMasks) {
+  write_squares(folder_ / "squares.png", folder_ / "colors.png");
+  const auto count = [&](Arguments arguments) {
+    arguments.insert(arguments.begin(), {"segment", path("squares.png")});
+    arguments.insert(arguments.end(), {"--mask-output", path("m.png"), "--json"});
+    const Value report = parse_json(good(arguments).out, "segment");
+    return static_cast<int>(*report.find("selected_pixels")->number());
+  };
+  const std::string color = path("colors.png");
+  EXPECT_EQ(count({"--wand=-16,16"}), 256);
+  EXPECT_EQ(image("m.png").code(10, 10, 0), 255.0F);
+  EXPECT_EQ(image("m.png").code(30, 10, 0), 0.0F);
+  EXPECT_EQ(image("m.png").code(45, 45, 0), 0.0F);
+  EXPECT_EQ(count({"--wand=-16,16", "--everywhere"}), 512);
+  EXPECT_EQ(count({"--wand=-16,16", "--everywhere", "--color", color}), 256);
+  EXPECT_EQ(count({"--wand=-16,16", "--everywhere", "--color", color, "--color-tolerance", "2"}),
+            512);
+  EXPECT_EQ(count({"--wand=-16,16", "--angle-tolerance", "60"}), 64 * 64);
+  // Union: both squares, by a wand each, by wand and lasso, and by all three.
+  EXPECT_EQ(count({"--wand=-16,16", "--wand=16,-16"}), 512);
+  const std::string lasso = "--lasso=8,-8 24,-8 24,-24 8,-24";
+  EXPECT_EQ(count({lasso}), 256);
+  EXPECT_EQ(image("m.png").code(39, 45, 0), 0.0F);
+  EXPECT_EQ(image("m.png").code(40, 45, 0), 255.0F);
+  EXPECT_EQ(image("m.png").code(55, 55, 0), 255.0F);
+  EXPECT_EQ(image("m.png").code(55, 56, 0), 0.0F);
+  EXPECT_EQ(count({"--wand=-16,16", lasso}), 512);
+  EXPECT_EQ(count({"--sigma", "0", "--select=-16,16", "--wand=16,-16", lasso}), 512);
+  // Beyond the picture's sides there is nothing to select; half a pixel is half selected.
+  EXPECT_EQ(count({"--lasso=-500,0 500,0 0,500"}), 64 * 32);
+  EXPECT_EQ(count({"--lasso=-16.5,-32 0,-32 0,32 -16.5,32"}), 17 * 64);
+  EXPECT_NEAR(image("m.png").code(15, 20, 0), 127.5F, 1.0F);
+  EXPECT_EQ(count({lasso, "--feather", "4"}), 256);
+  EXPECT_GT(image("m.png").code(39, 48, 0), 40.0F);
+}
+
+TEST_F(Pictures, WandsAndLassosRefuseWhatIsNoPoint) {
+  const auto refuse = [&](const std::string& flag, const std::vector<std::string>& names) {
+    bad({"segment", path("normal.png"), flag, "--mask-output", path("m.png")}, 1, names);
+  };
+  refuse("--wand=40,0", {"40,0", "x from -32 to 32", "y up"});
+  refuse("--wand=nan,0", {"nan,0", "x,y"});
+  refuse("--wand=1 2", {"1 2", "x,y"});
+  const std::vector<std::string> lasso = {"lasso", "at least 3 points x,y", "y up"};
+  for (const std::string points : {"1,1 2,2", "1,1 2,2 3", "1,1 2,2 3,x", "1,1 2,2 inf,0",
+                                   "1,1 2,2 1e30,0", "1,1;2,2;3,3", " "}) {
+    refuse("--lasso=" + points, lasso);
+  }
+  bad({"segment", path("normal.png"), "--wand", "1,1", "-o", path("l.png")}, 1,
+      {"need a file for the mask"});
+  bad({"segment", path("normal.png"), "--mask-output", path("m.png")}, 1,
+      {"needs places, wands or lassos"});
+  bad({"segment", path("normal.png"), "--wand", "1,1", "--angle-tolerance", "200", "--mask-output",
+       path("m.png")},
+      1, {"angle_tolerance", "180"});
+}
+
 TEST_F(Pictures, ShadeLightsFromWhereItIsTold) {
   write_image(folder_ / "tilted.png", tilted_map(16, 40.0, CodeType::U8));  // towards +x
   good(
@@ -161,6 +280,61 @@ TEST_F(Pictures, ShadeLightsFromWhereItIsTold) {
       {"NAME=VALUE"});
   bad({"shade", path("normal.png"), "--light", "1,2", "-o", path("o.png")}, 2,
       {"--light", "x,y,z"});
+}
+
+/// A ball of radius 20 before a wall that faces the viewer.
+RawImage ball_map(int size) {
+  RawImage codes(size, size, 3, CodeType::U16);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const double u = x + 0.5 - 0.5 * size;
+      const double v = 0.5 * size - y - 0.5;
+      const double z = std::sqrt(std::max(0.0, 400.0 - u * u - v * v));
+      const bool ball = z > 0.0;
+      const std::array<double, 3> n{ball ? u / 20.0 : 0.0, ball ? v / 20.0 : 0.0,
+                                    ball ? z / 20.0 : 1.0};
+      for (int c = 0; c < 3; ++c) {
+        codes.row<std::uint16_t>(y)[3 * x + c] =
+            static_cast<std::uint16_t>(std::lround(65535.0 * 0.5 * (n[c] + 1.0)));
+      }
+    }
+  }
+  return codes;
+}
+
+TEST_F(Pictures, EdgesThrowShadowsAwayFromTheLight) {
+  write_image(folder_ / "ball.png", ball_map(size));
+  for (const std::string style : {"lit", "matte", "toon", "lines", "curvature", "exaggerated"}) {
+    const Arguments shade{"shade", path("ball.png"), "--style", style, "--light=-1,0,1", "-o"};
+    const auto shaded = [&](const std::string& name, const std::string& length) {
+      Arguments all = shade;
+      all.insert(all.end(), {path(name), "--edge-shadows", length});
+      good(all);
+      return image(name);
+    };
+    const RawImage without = shaded("without.png", "0");
+    const RawImage with = shaded("with.png", "10");
+    // Right of the ball, which ends at column 52; left of it and far off nothing changes.
+    EXPECT_LT(with.code(54, 32, 1), without.code(54, 32, 1) - 8.0F) << style;
+    EXPECT_LE(with.code(54, 32, 1), with.code(58, 32, 1)) << style;
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < 20; ++x) {
+        ASSERT_EQ(with.code(x, y, 1), without.code(x, y, 1)) << style << " " << x << ", " << y;
+      }
+    }
+    EXPECT_EQ(with.code(63, 63, 1), without.code(63, 63, 1)) << style;
+  }
+  // The style's own light decides where there is no --light; one before the picture casts none.
+  good({"shade", path("ball.png"), "--style", "toon", "--set", "azimuth=0", "--edge-shadows", "10",
+        "-o", path("right.png")});
+  EXPECT_LT(image("right.png").code(9, 32, 1), image("right.png").code(54, 32, 1) - 8.0F);
+  good({"shade", path("ball.png"), "--style", "matte", "--light", "0,0,1", "--edge-shadows", "10",
+        "-o", path("front.png")});
+  EXPECT_EQ(image("front.png").code(54, 32, 1), image("front.png").code(2, 2, 1));
+  for (const std::string length : {"-1", "5000", "nan"}) {
+    bad({"shade", path("ball.png"), "--edge-shadows=" + length, "-o", path("o.png")}, 1,
+        {"length must be a number from 0 to 1000"});
+  }
 }
 
 TEST_F(Pictures, WrongUseIsOneSentence) {

@@ -300,6 +300,17 @@ TEST_F(Verbs, DescribeListsUnitsRangesAndNames) {
   EXPECT_NE(text.find("0 to 1"), std::string::npos);
 }
 
+TEST_F(Verbs, DescribeListsTheStylesOfShade) {
+  const std::string text = run_all({{"describe", "--styles"}})[0].out;
+  const Value styles = parse_json(run_all({{"describe", "--styles", "--json"}})[0].out, "styles");
+  EXPECT_EQ(styles.array()->size(), 4U);
+  for (const Value& style : *styles.array()) {
+    EXPECT_NE(text.find(*style.find("style")->text() + ": "), std::string::npos);
+    EXPECT_GE(style.find("options")->array()->size(), 3U);
+  }
+  EXPECT_NE(text.find("  bands "), std::string::npos);
+}
+
 TEST_F(Verbs, EditsAreTheSameOnOneProcessor) {
   const Mesh mesh = hemisphere(12, 24);
   write_image(folder_ / "round_map.png", wavy_map(size, 3, CodeType::U16));

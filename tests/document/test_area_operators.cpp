@@ -1,30 +1,13 @@
-#include "document/edit_fixture.h"
+#include "document/picture_fixture.h"
 #include "support/relief.h"
 
 #include "normalshop/core/error.h"
-#include "normalshop/core/slope.h"
-#include "normalshop/document/image_document.h"
 #include "normalshop/rgbn/curl.h"
 
 /// Operators that rewrite slopes in an area, on pictures: there an edit is nothing but the
 /// operator.
 namespace normalshop::test {
 namespace {
-
-/// Slopes as a picture of floats.
-ImageDocument picture(SlopeView slopes, Border border = Border::Clamp) {
-  RawImage codes(slopes.width(), slopes.height(), 3, CodeType::F32);
-  for (int y = 0; y < slopes.height(); ++y) {
-    for (int x = 0; x < slopes.width(); ++x) {
-      const Vec3f n = normal_from_slope(slopes(x, y));
-      for (int c = 0; c < 3; ++c) codes.row<float>(y)[3 * x + c] = n[c];
-    }
-  }
-  ImageDocument::Images images;
-  images.normals = NormalMap(std::move(codes), NormalConvention{.signed_float = true});
-  images.border = border;
-  return ImageDocument(std::move(images));
-}
 
 SlopeImage constant(const Vec2f& slope) { return {48, 40, slope}; }
 

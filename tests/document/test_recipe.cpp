@@ -21,7 +21,7 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
   {"operator": "stamp", "view": {"direction": [0, 0.1, 1], "up": [1, 0, 0], "center": [1, 2, 3],
                                  "width": 0.7, "height": 0.2},
    "options": {"patch": "cone.png", "size": 0.1, "relief": -2, "rotation": 33, "scale_x": -1.5,
-               "scale_y": 2, "shear": 0.2, "heights": "grow", "border": 0.3},
+               "scale_y": 2, "shear": 0.2, "heights": "grow", "border": 0.3, "high_pass": 0.2},
    "strokes": [[[0.1, 0.1]]]},
   {"operator": "text", "view": {"facing": [0.1, 0.2, 0.3], "width": 2},
    "options": {"text": "two\nlines \"quoted\"", "size": 0.1, "height": -0.01, "bevel": 0.02,
@@ -46,11 +46,24 @@ const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits
    "options": {"method": "transform", "sigma": 0.07, "sigma_normal": 0.3, "sigma_color": 0.4,
                "guide_sigma": 0.01, "iterations": 2, "area": "brush", "brush": 0.3,
                "hardness": 0.1},
-   "strokes": [[[0, 0], [1, 1]]]}]})";
+   "strokes": [[[0, 0], [1, 1]]]},
+  {"operator": "equalize", "view": "front",
+   "options": {"sigma": 0.01, "gains": [0, 1.5, -2], "base_gain": 0.5, "area": "inside",
+               "feather": 0.07},
+   "strokes": [[[0, 0], [1, 1], [0, 1]]]},
+  {"operator": "convolve", "view": "front",
+   "options": {"kernel": "blur.json", "normalize": true, "pixel": 0.01, "area": "brush",
+               "brush": 0.4},
+   "strokes": [[[0, 0], [1, 1]]]},
+  {"operator": "transplant", "view": "right",
+   "options": {"image": "cone.png", "size": 0.4, "repeat": true, "relief": 3, "rotation": 30,
+               "scale_x": -2, "scale_y": 0.5, "shear": -1, "heights": "grow", "border": 0.2,
+               "sigma": 0.03, "area": "inside", "brush": 0.1, "hardness": 0.3, "feather": 0.2},
+   "strokes": [[[0, 0], [1, 1], [0, 1]]]}]})";
 
 TEST(Recipe, WhatIsWrittenReadsBackTheSame) {
   const Recipe recipe = parse(full_recipe);
-  ASSERT_EQ(recipe.edits.size(), 8U);
+  ASSERT_EQ(recipe.edits.size(), parse_json(full_recipe, "").find("edits")->array()->size());
   const std::string once = to_json(to_value(recipe));
   EXPECT_EQ(to_json(to_value(parse(once))), once);
 }
@@ -59,7 +72,7 @@ TEST(Recipe, EveryFieldComesThrough) {
   const std::string text = to_json(to_value(parse(full_recipe)));
   const Value written = parse_json(text, "");
   const Value given = parse_json(full_recipe, "");
-  for (std::size_t i = 0; i < 8; ++i) {
+  for (std::size_t i = 0; i < given.find("edits")->array()->size(); ++i) {
     const Value& before = given.find("edits")->array()->at(i);
     const Value& after = written.find("edits")->array()->at(i);
     for (const auto& [name, value] : *before.object()) {
@@ -121,8 +134,11 @@ TEST(Recipe, FieldsThatDescribeCallsRequiredAreRequired) {
       for (const Value& other : type.fields()) {
         const std::string& name = *other.find("name")->text();
         if (other.find("required") == nullptr || name == *field.find("name")->text()) continue;
-        const bool text = *other.find("type")->text() == "text";
-        options.emplace_back(name, text ? Value("cone.png") : Value(1));
+        const std::string& type_of = *other.find("type")->text();
+        options.emplace_back(name, type_of == "text"
+                                       ? Value(name == "kernel" ? "blur.json" : "cone.png")
+                                   : type_of == "numbers" ? Value(Value::Array{1})
+                                                          : Value(1));
       }
       const Value value(options);
       try {

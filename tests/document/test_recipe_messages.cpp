@@ -122,6 +122,8 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "r.json: edits[0].options.patch: x.png: cannot be read: there is no such file");
   EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 1, "scale_x": 0})"),
             "r.json: edits[0].options.scale_x must be a scale that is not 0, not the number 0");
+  EXPECT_EQ(other("stamp", R"({"patch": "cone.png", "size": 1, "high_pass": 1.5})"),
+            "r.json: edits[0].options.high_pass must be a number from 0 to 1, not the number 1.5");
   EXPECT_EQ(other("combine", "{}"), "r.json: edits[0].options.image is missing; it must be a text");
   EXPECT_EQ(other("combine", R"({"image": ""})"),
             "r.json: edits[0].options.image must be the name of a file, not the text \"\"");
@@ -133,6 +135,14 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
   EXPECT_EQ(other("combine", R"({"image": "cone.png"})"),
             "r.json: edits[0].strokes must be left out for the area \"view\"; the areas \"brush\" "
             "and \"inside\" take strokes");
+  EXPECT_EQ(other("transplant", R"({"sigma": 1})"),
+            "r.json: edits[0].options.image is missing; it must be a text");
+  EXPECT_EQ(other("transplant", R"({"image": "cone.png"})"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000");
+  EXPECT_EQ(other("transplant", R"({"image": "", "sigma": 1})"),
+            "r.json: edits[0].options.image must be the name of a file, not the text \"\"");
+  EXPECT_EQ(other("transplant", R"({"image": "x.png", "sigma": 1})"),
+            "r.json: edits[0].options.image: x.png: cannot be read: there is no such file");
   EXPECT_EQ(other("text", R"({"text": "", "size": 1, "height": 1, "bevel": 1})"),
             "r.json: edits[0].options.text must be a text that is not empty, not the text \"\"");
   EXPECT_EQ(other("smooth", R"({"sigma": 1, "area": "brush"})"),
@@ -153,6 +163,21 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
   EXPECT_EQ(other("filter", R"({"kind": "median", "sigma": 1})"),
             "r.json: edits[0].options.kind must be gaussian, high_pass, band_pass, "
             "laplacian_of_gaussian, unsharp, edge_enhance or scale, not the text \"median\"");
+  EXPECT_EQ(other("equalize", R"({"gains": [1]})"),
+            "r.json: edits[0].options.sigma is missing; it must be a number from 0 to 1000000");
+  EXPECT_EQ(other("equalize", R"({"sigma": 0, "gains": [1]})"),
+            "r.json: edits[0].options.sigma must be a number above 0, not the number 0");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1})"),
+            "r.json: edits[0].options.gains is missing; it must be a list");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": "1,2"})"),
+            "r.json: edits[0].options.gains must be a list, not the text \"1,2\"");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": []})"),
+            "r.json: edits[0].options.gains must be a list of 1 to 16 numbers, not a list of 0");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": [1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1]})"),
+            "r.json: edits[0].options.gains must be a list of 1 to 16 numbers, not a list of 17");
+  EXPECT_EQ(other("equalize", R"({"sigma": 1, "gains": [0, 101]})"),
+            "r.json: edits[0].options.gains[1] must be a number from -100 to 100, not the number "
+            "101");
 }
 
 TEST(RecipeMessages, Strokes) {

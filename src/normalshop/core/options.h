@@ -19,8 +19,8 @@
 ///     };
 ///
 /// Recipes, `describe`, command-line flags and later the studio's sliders come from it. Field
-/// types: float, int, bool, std::string, Vec2f, Curve, and enums with a `names_of(Enum)` found by
-/// ADL.
+/// types: float, int, bool, std::string, Vec2f, Curve, std::vector<float> (the range is that of
+/// each number), and enums with a `names_of(Enum)` found by ADL.
 namespace normalshop {
 
 template <class Owner, class T>

@@ -40,7 +40,7 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place
   const Extent& extent = place.extent;
   const Vec2f spare =
       0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
-  const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach());
+  const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach(pixel));
   const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, place.model);
   const Extent window = widened(read, 4.0F * pixel);
   try {

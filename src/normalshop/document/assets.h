@@ -17,6 +17,8 @@ class Assets {
 
   /// A patch from a normal map file, with its alpha as opacity; names are relative to the recipe.
   virtual Patch patch(const std::string& file) = 0;
+  /// A kernel (kernel_text.h) from a JSON file.
+  virtual Image<float> kernel(const std::string& file) = 0;
   /// The outlines of a text; an empty font name: the default font.
   virtual Outline text(const std::string& text, const std::string& font) = 0;
 };

@@ -83,8 +83,8 @@ class EditOperator {
   virtual std::string_view asset_field() const { return {}; }
   /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
-  /// Object units read beyond the extent.
-  virtual float reach() const { return 0.0F; }
+  /// Object units read beyond the extent, in a chart whose pixels are that long.
+  virtual float reach(float /*pixel*/) const { return 0.0F; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.
   virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
   /// An operator that moves colours along with normals writes what they become, and returns where.

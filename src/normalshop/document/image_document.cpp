@@ -82,7 +82,7 @@ void repeat_strokes(Edit& edit, const Extent& tile) {
 /// The pixels that an edit needs: what it changes, and what it reads around.
 Rect choose_window(const EditOperator& operation, const Rect& changed, Border border,
                    const Rect& picture) {
-  const int reach = static_cast<int>(std::min(std::ceil(operation.reach()), 1e6F)) + 2;
+  const int reach = static_cast<int>(std::min(std::ceil(operation.reach(1.0F)), 1e6F)) + 2;
   const Rect read = grow(changed, reach);
   const Rect inside = intersect(read, picture);
   const bool leaves = inside.width() < read.width() || inside.height() < read.height();

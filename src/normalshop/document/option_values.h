@@ -2,6 +2,7 @@
 
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "normalshop/core/curve.h"
 #include "normalshop/core/options.h"
@@ -52,6 +53,10 @@ void read_field(const FieldReader& reader, const Field<Owner, T>& f, Options& op
       }
     }
     target = points.empty() ? Curve() : Curve(std::move(points));
+  } else if constexpr (std::is_same_v<T, std::vector<float>>) {
+    for (const FieldReader& item : reader.items()) {
+      target.push_back(static_cast<float>(item.number(f.min, f.max)));
+    }
   } else {
     static_assert(NamedEnum<T>);
     target = static_cast<T>(reader.one_of(names_list<T>()));
@@ -79,6 +84,8 @@ Value field_value(const Options& options, const Field<Owner, T>& f) {
     Value::Array points;
     for (const Vec2f& p : value.points()) points.push_back(Value::Array{p.x(), p.y()});
     return points;
+  } else if constexpr (std::is_same_v<T, std::vector<float>>) {
+    return Value::Array(value.begin(), value.end());
   } else if constexpr (NamedEnum<T>) {
     return name_of(value);
   } else {
@@ -101,6 +108,7 @@ constexpr std::string_view type_name() {
   if constexpr (std::is_same_v<T, bool>) return "switch";
   if constexpr (std::is_same_v<T, std::string>) return "text";
   if constexpr (std::is_same_v<T, Curve>) return "curve";
+  if constexpr (std::is_same_v<T, std::vector<float>>) return "numbers";
   return "name";
 }
 

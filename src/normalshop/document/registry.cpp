@@ -5,10 +5,11 @@ namespace normalshop {
 
 const std::vector<OperatorType>& operator_types() {
   static const std::vector<OperatorType> types{
-      pen_operator(),     trim_operator(),    stamp_operator(),   text_operator(),
-      combine_operator(), smooth_operator(),  sharpen_operator(), filter_operator(),
-      denoise_operator(), flatten_operator(), paint_operator(),   rotate_operator(),
-      balance_operator(), project_operator(), warp_operator()};
+      pen_operator(),     trim_operator(),     stamp_operator(),    text_operator(),
+      combine_operator(), smooth_operator(),   sharpen_operator(),  filter_operator(),
+      denoise_operator(), convolve_operator(), equalize_operator(), transplant_operator(),
+      flatten_operator(), paint_operator(),    rotate_operator(),   balance_operator(),
+      project_operator(), warp_operator()};
   return types;
 }
 

@@ -5,6 +5,8 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/normal_map.h"
 #include "normalshop/core/slope.h"
+#include "normalshop/document/kernel_text.h"
+#include "normalshop/io/atomic_file.h"
 #include "normalshop/io/conventions.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/io/outline_font.h"
@@ -14,6 +16,7 @@ namespace normalshop {
 namespace {
 
 constexpr int largest_patch = 8192;
+constexpr std::size_t largest_kernel = std::size_t{1} << 23U;  // 255 x 255 long numbers fit
 
 }  // namespace
 
@@ -46,6 +49,11 @@ Patch FileAssets::patch(const std::string& file) {
     }
   }
   return patch;
+}
+
+Image<float> FileAssets::kernel(const std::string& file) {
+  const std::filesystem::path path = folder_ / file;
+  return parse_kernel(read_file(path, largest_kernel), path.string());
 }
 
 Outline FileAssets::text(const std::string& text, const std::string& font) {

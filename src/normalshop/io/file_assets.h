@@ -6,12 +6,13 @@
 
 namespace normalshop {
 
-/// Patches and fonts from files; relative names start in `folder`.
+/// Patches, kernels and fonts from files; relative names start in `folder`.
 class FileAssets : public Assets {
  public:
   explicit FileAssets(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   Patch patch(const std::string& file) override;
+  Image<float> kernel(const std::string& file) override;
   Outline text(const std::string& text, const std::string& font) override;
 
  private:

@@ -20,7 +20,7 @@ class FilterOperator : public AreaEdit<AreaEditOptions<typename Filter::Options>
   }
   std::string_view name() const override { return Filter::name; }
   bool reads() const override { return true; }
-  float reach() const override { return Filter::reach(this->options_); }
+  float reach(float /*pixel*/) const override { return Filter::reach(this->options_); }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     Options scaled = scale_lengths(this->options_, 1.0F / input.pixel);

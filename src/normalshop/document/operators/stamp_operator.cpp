@@ -1,7 +1,9 @@
 #include <array>
 
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/document/operators/operators.h"
 #include "normalshop/document/operators/placed_operator.h"
+#include "normalshop/rgbn/filter.h"
 
 namespace normalshop {
 
@@ -9,6 +11,7 @@ namespace {
 
 struct StampEditOptions : StampOptions {
   std::string patch;
+  float high_pass = 0.0F;
 
   static constexpr std::array<std::string_view, 2> required_fields{"patch", "size"};
   static constexpr auto fields() {
@@ -22,9 +25,25 @@ struct StampEditOptions : StampOptions {
                   "the opacity; relative to the recipe"),
             field<StampEditOptions, float>("size", &StampEditOptions::size, "length", 0.0, 1e6,
                                            "Width of the patch on the surface; above 0")},
-        others);
+        others,
+        std::tuple{field("high_pass", &StampEditOptions::high_pass, "1", 0.0, 1.0,
+                         "Takes the patch's shape away and stamps its details: what is finer than "
+                         "this part of its width; 0 stamps all of it")});
   }
 };
+
+/// The patch without what a Gaussian of that sigma (pixels) leaves of it, seen where it is opaque.
+void take_shape_away(Patch& patch, float sigma) {
+  FilterOptions options;
+  options.kind = FilterKind::HighPass;
+  options.sigma = sigma;
+  filter(patch.slopes, patch.opacity, patch.slopes, patch.slopes.rect(), options);
+  if (patch.opacity.empty()) return;
+  // Beside the last opaque pixel interpolation reads one that the filter has left as it was.
+  for_pixels(patch.slopes.rect(), [&](int x, int y) {
+    if (patch.opacity(x, y) == 0.0F) patch.slopes(x, y).setZero();
+  });
+}
 
 class StampOperator : public PlacedOperator {
  public:
@@ -37,7 +56,11 @@ class StampOperator : public PlacedOperator {
   }
   std::string_view name() const override { return "stamp"; }
   Value options() const override { return options_value(options_); }
-  void load(Assets& assets) override { patch_ = assets.patch(options_.patch); }
+  void load(Assets& assets) override {
+    patch_ = assets.patch(options_.patch);
+    const auto width = static_cast<float>(patch_.slopes.width());
+    if (options_.high_pass > 0.0F) take_shape_away(patch_, options_.high_pass * width);
+  }
   std::string_view asset_field() const override { return "patch"; }
 
   Extent extent(const std::vector<UnitStroke>& strokes) const override {

@@ -128,7 +128,7 @@ class WarpOperator : public EditOperator {
   Extent extent(const std::vector<UnitStroke>& strokes) const override {
     return extent_of(strokes, options_.kind == WarpKind::Sketch ? 0.0F : options_.radius);
   }
-  float reach() const override { return options_.radius; }
+  float reach(float /*pixel*/) const override { return options_.radius; }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan) const override {
     return warp_into(input, {change, {}});
