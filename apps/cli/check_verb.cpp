@@ -40,8 +40,8 @@ void run_check(const CheckFlags& flags) {
   }
   if (flags.picture.empty()) return;
   const float largest = write_curl_picture(opened, files.border, flags.largest, flags.picture);
-  std::fprintf(flags.json ? stderr : stdout, "wrote %s (dark: 0, pale: a curl of %.3g)\n", flags.picture.string().c_str(),
-               static_cast<double>(largest));
+  std::fprintf(flags.json ? stderr : stdout, "wrote %s (dark: 0, pale: a curl of %.3g)\n",
+               flags.picture.string().c_str(), static_cast<double>(largest));
 }
 
 }  // namespace
