@@ -14,8 +14,8 @@ inline constexpr float steep_slope = 3.0F;
 /// All others end up below this: 80 degrees.
 inline constexpr float steepest_slope = 6.0F;
 
-/// Limits the slopes of a chart. Returns how far each pixel's edit must replace, 0 to 1; empty where
-/// no pixel is as steep.
+/// Limits the slopes of a chart. Returns how far each pixel's edit must replace, 0 to 1; empty
+/// where no pixel is as steep.
 MaskImage limit_grazing(SlopeSpan slopes);
 
 /// Turns what an operator, reading `before`, added into what replaces it: change and coverage of
