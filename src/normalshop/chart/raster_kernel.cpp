@@ -18,23 +18,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Vertex = Rasterizer::Vertex;
 
-/// Pixels of the tile that a triangle may cover, inclusive, relative to the tile.
-struct Box {
-  int x0;
-  int y0;
-  int x1;
-  int y1;
-};
-
-/// Depth as a plane over tile pixels, and its limits, so that edge-on triangles stay in range.
-struct Plane {
-  float origin;
-  float dx;
-  float dy;
-  float low;
-  float high;
-};
-
 /// Triangles side by side, and what drawing each of them takes.
 struct Batch {
   static constexpr int capacity = 16;
@@ -56,6 +39,8 @@ struct Batch {
   Lane<std::uint32_t> id;
   std::array<Corner, 3> corners;  ///< after set_up() in the order that faces the viewer
   // Filled by set_up(); of triangles that are not large, all but the box.
+  // The box holds the pixels of the tile that a triangle may cover, inclusive; depth is a plane
+  // over the tile's pixels, with limits so that edge-on triangles stay in range.
   alignas(64) Lane<std::int32_t> x0;
   alignas(64) Lane<std::int32_t> y0;
   alignas(64) Lane<std::int32_t> x1;  ///< below x0 where nothing is to draw
@@ -324,18 +309,19 @@ void draw_large(const Batch& batch, std::size_t i, const TileRect& rect, Tile& t
       std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(c.x - a.x) * (b.y - a.y);
   if (area == 0) return;
   if (area < 0) std::swap(b, c);
-  const Box box{batch.x0[i], batch.y0[i], batch.x1[i], batch.y1[i]};
-  const int cx = (rect.x + box.x0) * unit + unit / 2;
-  const int cy = (rect.y + box.y0) * unit + unit / 2;
+  const int x0 = batch.x0[i];
+  const int y0 = batch.y0[i];
+  const int cx = (rect.x + x0) * unit + unit / 2;
+  const int cy = (rect.y + y0) * unit + unit / 2;
   std::array<LargeEdge, 3> edges{make_edge(a, b, cx, cy), make_edge(b, c, cx, cy),
                                  make_edge(c, a, cx, cy)};
   const auto dz = hn::Set(d, batch.dx[i]);
   const auto low = hn::Set(d, batch.low[i]);
   const auto high = hn::Set(d, batch.high[i]);
   const auto iota_f = hn::Iota(d, 0.0F);
-  for (int y = box.y0; y <= box.y1; ++y) {
+  for (int y = y0; y <= batch.y1[i]; ++y) {
     std::int64_t first = 0;
-    std::int64_t last = box.x1 - box.x0;
+    std::int64_t last = batch.x1[i] - x0;
     for (auto& e : edges) {
       clip_span(e, first, last);
       e.value += e.step_y;
@@ -343,8 +329,8 @@ void draw_large(const Batch& batch, std::size_t i, const TileRect& rect, Tile& t
     float* depth = tile.depth.data() + y * stride;
     std::uint32_t* triangle = tile.triangle.data() + y * stride;
     const auto row_z = hn::Set(d, batch.origin[i] + batch.dy[i] * static_cast<float>(y));
-    const int end = box.x0 + static_cast<int>(last);
-    for (int x = box.x0 + static_cast<int>(first); x <= end; x += lanes) {
+    const int end = x0 + static_cast<int>(last);
+    for (int x = x0 + static_cast<int>(first); x <= end; x += lanes) {
       const auto inside = hn::Lt(hn::Iota(di, 0), hn::Set(di, end - x + 1));
       const auto xs = hn::Add(iota_f, hn::Set(d, static_cast<float>(x)));
       const auto z = hn::Min(hn::Max(hn::Add(row_z, hn::Mul(dz, xs)), low), high);
