@@ -182,6 +182,7 @@ void Pull::fetch(const RawImage& codes, const Run& run) const {
 }
 
 void Pull::read_maps(const Run& run) {
+  if (!options_.albedo && !options_.normals) return;
   const StorageSet& set = storage_.sets[run.texture_set];
   find_texels_ahead(run);
   if (options_.albedo) fetch(set.albedo.codes(), run);
