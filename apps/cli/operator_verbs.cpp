@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "image_flags.h"
 #include "model_flags.h"
@@ -29,14 +30,14 @@ struct OperatorFlags {
 
 std::string flag_of(const Value& field) { return "--" + *field.find("name")->text(); }
 
-/// "1,2,3"; what is no list of numbers stays a text.
-Value number_list(std::string_view text) {
+/// "1,2,3"; none when it is something else.
+std::optional<Value::Array> read_numbers(std::string_view text) {
   Value::Array numbers;
   std::size_t from = 0;
   while (from <= text.size()) {
     const std::size_t comma = std::min(text.find(',', from), text.size());
     const auto number = read_number(text.substr(from, comma - from));
-    if (!number) return text;
+    if (!number) return std::nullopt;
     numbers.emplace_back(*number);
     from = comma + 1;
   }
@@ -52,22 +53,16 @@ Value option_value(const Value& field, const std::string& text) {
   }
   if (type == "switch" && (text == "true" || text == "false")) return text == "true";
   if (type == "curve") return parse_json(text, flag_of(field));
-  if (type == "numbers") return number_list(text);
+  if (type == "numbers") {
+    if (const auto numbers = read_numbers(text)) return *numbers;
+  }
   return text;
 }
 
 /// "x,y" or "x,y,pressure".
 Value read_point(std::string_view text) {
-  Value::Array point;
-  std::size_t from = 0;
-  while (from <= text.size()) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    const auto number = read_number(text.substr(from, comma - from));
-    if (!number || point.size() == 3) break;
-    point.emplace_back(*number);
-    from = comma + 1;
-  }
-  if (from > text.size() && point.size() >= 2) return point;
+  const auto point = read_numbers(text);
+  if (point && (point->size() == 2 || point->size() == 3)) return *point;
   throw WrongUse("--stroke", "must be points x,y or x,y,pressure with spaces between them, not \"" +
                                  std::string(text) + "\"");
 }
