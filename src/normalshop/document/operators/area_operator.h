@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "normalshop/document/operators/filter_area.h"
 #include "normalshop/document/option_values.h"
 
@@ -12,6 +14,11 @@ struct AreaEditOptions : Options, FilterAreaOptions {
     return std::tuple_cat(Options::fields(), filter_area_fields<AreaEditOptions>());
   }
 };
+
+/// In pixels: a Gaussian as wide as that is flat over the chart, wider ones give the same.
+inline float widest_sigma(const OperatorInput& input) {
+  return 4.0F * static_cast<float>(std::max(input.source.width(), input.source.height()));
+}
 
 /// What all edits with an area have in common. `Options` has theirs among its fields.
 template <class Options>

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "normalshop/core/error.h"
 #include "normalshop/document/operators/area_operator.h"
 
@@ -24,9 +22,7 @@ class FilterOperator : public AreaEdit<AreaEditOptions<typename Filter::Options>
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     Options scaled = scale_lengths(this->options_, 1.0F / input.pixel);
-    // A Gaussian as wide as that is flat over the chart: wider ones give the same.
-    const int side = std::max(input.source.width(), input.source.height());
-    Filter::limit(scaled, 4.0F * static_cast<float>(side));
+    Filter::limit(scaled, widest_sigma(input));
     const Rect region = intersect(area_mask(scaled, input, coverage), input.region);
     if (region.empty()) return {};
     Filter::apply(input, change, region, scaled);

@@ -40,9 +40,7 @@ class TransplantOperator : public LaidImageEdit<TransplantEditOptions> {
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     TransplantEditOptions scaled = scaled_options(input);
-    // A Gaussian as wide as that is flat over the chart: wider ones give the same.
-    const int side = std::max(input.source.width(), input.source.height());
-    scaled.sigma = std::min(scaled.sigma, 4.0F * static_cast<float>(side));
+    scaled.sigma = std::min(scaled.sigma, widest_sigma(input));
     const Rect region = intersect(area_mask(scaled, input, coverage), input.region);
     if (region.empty()) return {};
     const Donor donor = make_donor(input, scaled, region);
