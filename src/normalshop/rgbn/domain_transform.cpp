@@ -125,14 +125,6 @@ Rect held_around(const Rect& region, const Rect& image, const DomainTransformOpt
   return intersect(wanted, {-image.x1, -image.y1, 2 * image.x1, 2 * image.y1});
 }
 
-/// Room for a guide.
-RgbnWindow make_window(const Rect& size, bool color) {
-  RgbnWindow window;
-  window.slopes.resize(size.width(), size.height());
-  if (color) window.color.resize(size.width(), size.height());
-  return window;
-}
-
 /// The window blurred by guide_sigma; empty where that is 0.
 RgbnWindow first_guide(const RgbnView& window, bool color, const DomainTransformOptions& options) {
   if (options.guide_sigma == 0.0F) return {};

@@ -36,14 +36,19 @@ float gather_pixel(const RgbnView& image, const BorderPixel& from_x, const Borde
 
 }  // namespace
 
+RgbnWindow make_window(const Rect& size, bool color) {
+  RgbnWindow window;
+  window.slopes.resize(size.width(), size.height());
+  if (color) window.color.resize(size.width(), size.height());
+  return window;
+}
+
 RgbnWindow gather_window(const RgbnView& image, const Rect& where, Border border) {
   assert(!image.slopes.empty());
   const Rect size = image.slopes.rect();
   const std::vector<BorderPixel> columns = border_pixels(where.x0, where.x1, size.x1, border);
   const std::vector<BorderPixel> rows = border_pixels(where.y0, where.y1, size.y1, border);
-  RgbnWindow window;
-  window.slopes.resize(where.width(), where.height());
-  if (!image.color.empty()) window.color.resize(where.width(), where.height());
+  RgbnWindow window = make_window(where, !image.color.empty());
   window.validity.resize(where.width(), where.height());
   std::atomic<bool> all_count = true;
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {

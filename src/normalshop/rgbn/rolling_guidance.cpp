@@ -18,15 +18,11 @@ BilateralOptions step(const RollingGuidanceOptions& options, float guide_sigma) 
           .guide_sigma = guide_sigma};
 }
 
-/// Room for a guide, with colours where they are compared or wanted.
-RgbnWindow like(const RgbnWindow& window, bool color) {
-  RgbnWindow guide;
-  guide.slopes.resize(window.slopes.width(), window.slopes.height());
+/// A guide that is 0 everywhere, with colours where they are compared or wanted.
+RgbnWindow zero_window(const Rect& size, bool color) {
+  RgbnWindow guide = make_window(size, color);
   guide.slopes.fill(Vec2f::Zero());
-  if (color) {
-    guide.color.resize(window.slopes.width(), window.slopes.height());
-    guide.color.fill(Vec3f::Zero());
-  }
+  guide.color.fill(Vec3f::Zero());
   return guide;
 }
 
@@ -52,7 +48,7 @@ Rect rolling_guidance(const RgbnView& source, const RgbnSpan& target, Rect regio
   const bool color = !input.color.empty() && (options.sigma_color > 0.0F || !target.color.empty());
   RgbnWindow guide;
   for (int k = 1; k <= options.iterations; ++k) {
-    RgbnWindow next = like(input, color);
+    RgbnWindow next = zero_window(input.slopes.rect(), color);
     bilateral(input.view(), guide.view(), {next.slopes, next.color},
               grow(inner, (options.iterations - k) * reach(later)), k == 1 ? first : later);
     guide = std::move(next);

@@ -16,6 +16,9 @@ struct RgbnWindow {
   RgbnView view() const { return {slopes, color, validity}; }
 };
 
+/// Room for a window, its pixels undefined.
+RgbnWindow make_window(const Rect& size, bool color);
+
 /// Copies `where`, which may reach beyond the image. Pixels that don't count, because their
 /// validity is not above 0 or because they hold numbers that are not finite, become 0 everywhere.
 /// The image has at least one pixel.
