@@ -339,6 +339,13 @@ void draw_large(const Batch& batch, std::size_t i, const TileRect& rect, Tile& t
   }
 }
 
+/// By vectors no wider than they need to be.
+void draw_in_box(const Batch& batch, std::size_t i, int width, Tile& tile) {
+  if (width <= 4) return draw_small(hn::CappedTag<float, 4>(), batch, i, tile);
+  if (width <= 8) return draw_small(hn::CappedTag<float, 8>(), batch, i, tile);
+  draw_small(D(), batch, i, tile);
+}
+
 void draw_batch(const TileRect& rect, Batch& batch, Tile& tile) {
   set_up(rect, batch);
   for (std::size_t i = 0; i < static_cast<std::size_t>(batch.count); ++i) {
@@ -346,12 +353,8 @@ void draw_batch(const TileRect& rect, Batch& batch, Tile& tile) {
     if (width <= 0) continue;
     if (batch.large[i] != 0) {
       draw_large(batch, i, rect, tile);
-    } else if (width <= 4) {
-      draw_small(hn::CappedTag<float, 4>(), batch, i, tile);
-    } else if (width <= 8) {
-      draw_small(hn::CappedTag<float, 8>(), batch, i, tile);
     } else {
-      draw_small(D(), batch, i, tile);
+      draw_in_box(batch, i, width, tile);
     }
   }
   batch.count = 0;
