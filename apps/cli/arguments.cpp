@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <utility>
@@ -15,12 +16,12 @@ WrongUse wrong_use(const CLI::App& app, const std::string& what) {
   const auto verbs = app.get_subcommands();
   if (!verbs.empty()) {
     const std::string verb = verbs.front()->get_name();
+    const auto extra = verbs.front()->remaining();
     // A flag written wrongly is also a missing one: CLI11 names only what is missing.
-    for (const std::string& extra : verbs.front()->remaining()) {
-      if (!extra.starts_with("-")) continue;
-      return WrongUse(verb, "there is no flag '" + extra + "'; see normalshop " + verb + " --help");
-    }
-    return WrongUse(verb, what + "; see normalshop " + verb + " --help");
+    const auto flag = std::find_if(extra.begin(), extra.end(),
+                                   [](const std::string& text) { return text.starts_with("-"); });
+    const std::string fault = flag != extra.end() ? "there is no flag '" + *flag + "'" : what;
+    return WrongUse(verb, fault + "; see normalshop " + verb + " --help");
   }
   const auto unknown = app.remaining();
   const std::string missing =

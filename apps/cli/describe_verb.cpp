@@ -37,7 +37,7 @@ std::string remarks_of(const Value& field) {
 }
 
 Value described(const std::string& operation) {
-  const Value all = describe_operators();
+  Value all = describe_operators();
   if (operation.empty()) return all;
   Value::Array one;
   for (const Value& type : *all.array()) {
