@@ -139,6 +139,19 @@ void pen_wave_4000(benchmark::State& state) {
 }
 BENCHMARK(pen_wave_4000)->Arg(3)->Arg(16)->Arg(200)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// A dab of 64 pixels in the middle of a short stroke, as a brush asks for it; the chart around it
+/// is not touched.
+void pen_dab_64(benchmark::State& state) {
+  const Stroke stroke{{{480.0F, 500.0F}}, {{512.0F, 512.0F}}, {{540.0F, 530.0F}}};
+  PenOptions options;
+  options.width = 60.0F;
+  SlopeImage details(side, side);
+  MaskImage coverage(side, side);
+  const Rect dab{480, 480, 544, 544};
+  for (auto _ : state) pen(details, coverage, dab, std::span<const Stroke>(&stroke, 1), options);
+}
+BENCHMARK(pen_dab_64)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void pen_closed_step_2000(benchmark::State& state) {
   Stroke stroke;
   for (int i = 0; i < 400; ++i) {
