@@ -54,7 +54,7 @@ class EarClipper {
       after_.push_back(i + 1 == size_ ? 0 : i + 1);
     }
     const std::size_t tested = std::min(size_, largest_tested);
-    patience_ = 64 * size_ + 4 * tested * tested;
+    patience_ = 16 * size_ + 2 * tested * tested;
   }
 
   Triangles run() {
@@ -73,7 +73,7 @@ class EarClipper {
   }
 
  private:
-  static constexpr std::size_t largest_tested = 4096;
+  static constexpr std::size_t largest_tested = 2048;
 
   std::array<int, 3> triangle(std::size_t i) const {
     return {static_cast<int>(before_[i]), static_cast<int>(i), static_cast<int>(after_[i])};
