@@ -1,8 +1,9 @@
-# normalshop_floor(NAME SOURCES ... [FLOORS ...] [PRIVATE_LIBRARIES ...])
+# normalshop_floor(NAME SOURCES ... [FLOORS ...] [PRIVATE_LIBRARIES ...] [READS])
 # One floor = one static library normalshop::NAME. FLOORS are the floors below it that its public
-# headers use; third-party packages of a floor stay private to its .cpp files.
+# headers use; third-party packages of a floor stay private to its .cpp files. READS: it takes bytes
+# from outside.
 function(normalshop_floor name)
-  cmake_parse_arguments(FLOOR "" "" "SOURCES;FLOORS;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(FLOOR "READS" "" "SOURCES;FLOORS;PRIVATE_LIBRARIES" ${ARGN})
   add_library(normalshop_${name} STATIC ${FLOOR_SOURCES})
   add_library(normalshop::${name} ALIAS normalshop_${name})
   target_include_directories(normalshop_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
@@ -12,13 +13,15 @@ function(normalshop_floor name)
     PUBLIC ${FLOOR_FLOORS} Eigen3::Eigen
     PRIVATE ${FLOOR_PRIVATE_LIBRARIES} normalshop::floor_compiler)
   normalshop_precompiled(normalshop_${name} floor)
+  set_target_properties(normalshop_${name} PROPERTIES NORMALSHOP_READS ${FLOOR_READS})
 endfunction()
 
-# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...]): one GoogleTest program for a folder of
-# tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers without
-# optimisation.
+# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [SUITES]): one GoogleTest program for a
+# folder of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers
+# without optimisation. SUITES: the program takes long to start, so ctest starts it once a suite instead
+# of once a test.
 function(normalshop_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
+  cmake_parse_arguments(TEST "SUITES" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
@@ -27,7 +30,30 @@ function(normalshop_test name)
   if(NORMALSHOP_SANITIZE AND TEST_LOOPS)
     set_source_files_properties(${TEST_LOOPS} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
   endif()
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+  if(TEST_SUITES)
+    normalshop_add_suites(test_${name} ${TEST_SOURCES})
+  else()
+    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+  endif()
+endfunction()
+
+# normalshop_add_suites(PROGRAM SOURCES ...): each suite of the sources as a test of ctest.
+function(normalshop_add_suites program)
+  set_property(
+    DIRECTORY
+    APPEND
+    PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
+  foreach(source ${ARGN})
+    file(STRINGS ${source} lines REGEX "^TEST(_F|_P)?\\(")
+    list(TRANSFORM lines REPLACE "^TEST(_F|_P)?\\(([^,]*),.*" "\\2")
+    list(APPEND suites ${lines})
+  endforeach()
+  list(REMOVE_DUPLICATES suites)
+  set(all_skipped "PASSED  . 0 tests[.]\n(.  SKIPPED .[^\n]*\n)+$")
+  foreach(suite ${suites})
+    add_test(NAME ${suite} COMMAND ${program} --gtest_filter=${suite}.*:*/${suite}.*)
+    set_tests_properties(${suite} PROPERTIES TIMEOUT 900 SKIP_REGULAR_EXPRESSION "${all_skipped}")
+  endforeach()
 endfunction()
 
 # normalshop_fuzzer(NAME SOURCES ... LIBRARIES ...): the libFuzzer program fuzz_NAME. Its seeds, if

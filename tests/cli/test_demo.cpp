@@ -22,7 +22,7 @@ namespace {
 DemoModelOptions small_model() {
   DemoModelOptions options;
   options.cells = 24;
-  options.map_size = 512;
+  options.map_size = 256;
   return options;
 }
 
