@@ -114,6 +114,7 @@ TEST(ApplyEdit, EditsThatChangeNothingLeaveEveryCode) {
           R"("operator": "filter", "options": {"kind": "scale"})",
           R"("operator": "denoise", "options": {"sigma": 0})",
           R"("operator": "denoise", "options": {"sigma": 0, "method": "bilateral"})",
+          R"("operator": "denoise", "options": {"sigma": 0.1, "gain": 1})",
           R"("operator": "denoise", "options": {"sigma": 0, "method": "transform"})",
           R"("operator": "filter", "options": {"kind": "unsharp", "sigma": 0.1, "amount": 0})",
           R"("operator": "pen", "options": {"width": 0.2, "height": 0}, "strokes": [[[0, 0]]])",

@@ -190,6 +190,32 @@ TEST(AreaOperators, DenoiseOfAPartIsThatOfTheWhole) {
   }
 }
 
+TEST(AreaOperators, DenoiseGivesBackWithAGainWhatItTakes) {
+  const SlopeImage slopes = noisy_roof(48);
+  const SlopeImage before = slopes_of(picture(slopes)).slopes;
+  for (const std::string& method : denoise_methods) {
+    const auto with_gain = [&](const std::string& gain) {
+      ImageDocument document = picture(slopes);
+      document.apply(edit(R"("operator": "denoise", "view": "front",
+          "options": {"sigma": 2, "gain": )" +
+                          gain + R"(, "method": ")" + method + "\"}"));
+      return slopes_of(document).slopes;
+    };
+    const SlopeImage clean = with_gain("0");
+    const SlopeImage same = with_gain("1");
+    const SlopeImage enhanced = with_gain("2.5");
+    double largest = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const Vec2f b = before.data()[i];
+      ASSERT_EQ(same.data()[i], b) << method;
+      const Vec2f details = b - clean.data()[i];
+      largest = std::max(largest, double(details.norm()));
+      EXPECT_LT((enhanced.data()[i] - (b + 1.5F * details)).norm(), 1e-4F) << method;
+    }
+    EXPECT_GT(largest, 0.1) << method;
+  }
+}
+
 TEST(AreaOperators, DenoiseHeedsColours) {
   for (const std::string& method : denoise_methods) {
     for (const bool heeds : {false, true}) {

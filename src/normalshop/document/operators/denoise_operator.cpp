@@ -4,6 +4,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/document/operators/filter_operator.h"
 #include "normalshop/document/operators/operators.h"
+#include "normalshop/rgbn/bands.h"
 #include "normalshop/rgbn/bilateral.h"
 #include "normalshop/rgbn/domain_transform.h"
 #include "normalshop/rgbn/rolling_guidance.h"
@@ -29,6 +30,7 @@ struct DenoiseOptions {
   float sigma_color = 0.1F;
   float guide_sigma = 0.0F;
   int iterations = 3;
+  float gain = 0.0F;
 
   static constexpr auto fields() {
     using Own = DenoiseOptions;
@@ -49,7 +51,10 @@ struct DenoiseOptions {
         field<Own, float>("guide_sigma", &Own::guide_sigma, "length", 0.0, 1e6,
                           "Gaussian that takes noise out of what is compared; 0: a sixth of sigma"),
         field("iterations", &Own::iterations, "1", 1, 10,
-              "Rounds of rolling, or passes of transform; without effect for bilateral")};
+              "Rounds of rolling, or passes of transform; without effect for bilateral"),
+        field("gain", &Own::gain, "1", -100.0, 100.0,
+              "Factor of what the filter takes away: 0 takes it away, 1 leaves the input as it is, "
+              "more enhances details and keeps the edges between them as they are")};
   }
   float guide() const { return guide_sigma > 0.0F ? guide_sigma : guide_share * sigma; }
 };
@@ -109,6 +114,8 @@ struct DenoiseFilter {
                          options_of<DomainTransformOptions>(options, border));
         break;
     }
+    if (options.gain == 0.0F) return;
+    scale_band(input.source, {input.source, target}, {}, options.gain, target, region);
   }
 };
 
