@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   add_shade_verb(program);
   add_segment_verb(program);
   add_check_verb(program);
+  add_convert_verb(program);
   try {
     program.run(argc, argv);
   } catch (const WrongUse& e) {

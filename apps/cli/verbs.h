@@ -12,6 +12,7 @@ void add_compare_verb(CommandLine& program);
 void add_info_verb(CommandLine& program);
 void add_demo_verb(CommandLine& program);
 void add_check_verb(CommandLine& program);
+void add_convert_verb(CommandLine& program);
 void add_shade_verb(CommandLine& program);
 void add_segment_verb(CommandLine& program);
 void add_describe_verb(CommandLine& program);

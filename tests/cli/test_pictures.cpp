@@ -146,6 +146,17 @@ TEST_F(Pictures, BitsAndGreenOfTheOutput) {
   EXPECT_NEAR(image("out/normal.png").code(3, 3, 1) / 65535.0, 1.0 - up, 1e-2);
 }
 
+TEST_F(Pictures, ConvertTurnsGreenAndBack) {
+  good({"convert", path("normal.png"), "--green", "up", "--to-green", "down", "-o", path("d.png")});
+  EXPECT_FALSE(same_codes(image("d.png"), image("normal.png")));
+  good({"convert", path("d.png"), "--green", "down", "--to-green", "up", "-o", path("u.png")});
+  EXPECT_TRUE(same_codes(image("u.png"), image("normal.png")));
+  const ProgramRun run =
+      good({"convert", path("normal.png"), "--normalize", "--json", "-o", path("n.png")});
+  EXPECT_EQ(*parse_json(run.out, "convert").find("pixels")->number(), size * size);
+  bad({"convert", path("normal.png"), "-o", path("normal.png")}, 1, {"normal.png", "input"});
+}
+
 TEST_F(Pictures, CheckAndProject) {
   const ProgramRun checked = good({"check", path("normal.png"), "--json", "-o", path("curl.png")});
   const Value report = parse_json(checked.out, "check");

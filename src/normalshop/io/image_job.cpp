@@ -13,33 +13,14 @@ namespace normalshop {
 
 namespace {
 
-void check_not_input(const std::filesystem::path& target, const OpenImageOptions& inputs) {
-  for (const auto* input : {&inputs.normals, &inputs.color, &inputs.mask}) {
-    std::error_code error;
-    if (input->empty() || !std::filesystem::equivalent(*input, target, error)) continue;
-    throw InvalidInput(target.string() +
-                       ": this picture is an input; choose another name for the output");
-  }
-}
-
 ImageJob apply_all(const OpenImageOptions& open, const Recipe& recipe) {
   ImageJob job{open_image(open), {}, {}};
   for (const Edit& edit : recipe.edits) job.edits.push_back(job.opened.document.apply(edit));
   return job;
 }
 
-void write_normals(const ImageJob& job, const ImageExport& target) {
-  const NormalMap& normals = job.opened.document.normals();
-  NormalConvention convention = normals.convention();
-  convention.green_down = target.green_down.value_or(convention.green_down);
-  const bool half = job.opened.half_float && !target.type && extension_of(target.normals) == ".exr";
-  write_image(target.normals,
-              normals.encode(target.type.value_or(normals.codes().type()), convention),
-              {.half_float = half});
-}
-
 void write_all(ImageJob& job, const ImageExport& target) {
-  write_normals(job, target);
+  write_normals(job.opened.document.normals(), job.opened.half_float, target);
   job.files.push_back(target.normals);
   if (target.color.empty()) return;
   write_image(target.color, encode_colors(job.opened));
@@ -56,6 +37,24 @@ std::filesystem::path lossless_name(const std::filesystem::path& input, CodeType
 }
 
 }  // namespace
+
+void check_not_input(const std::filesystem::path& target, const OpenImageOptions& inputs) {
+  for (const auto* input : {&inputs.normals, &inputs.color, &inputs.mask}) {
+    std::error_code error;
+    if (input->empty() || !std::filesystem::equivalent(*input, target, error)) continue;
+    throw InvalidInput(target.string() +
+                       ": this picture is an input; choose another name for the output");
+  }
+}
+
+void write_normals(const NormalMap& normals, bool half_float, const ImageExport& target) {
+  NormalConvention convention = normals.convention();
+  convention.green_down = target.green_down.value_or(convention.green_down);
+  const bool half = half_float && !target.type && extension_of(target.normals) == ".exr";
+  write_image(target.normals,
+              normals.encode(target.type.value_or(normals.codes().type()), convention),
+              {.half_float = half});
+}
 
 ImageJob run_image_job(const OpenImageOptions& open, const Recipe& recipe,
                        const ImageExport& target) {

@@ -18,6 +18,12 @@ struct ImageExport {
   std::optional<bool> green_down;
 };
 
+/// Throws InvalidInput where `target` is one of the inputs: nothing of the user's is overwritten.
+void check_not_input(const std::filesystem::path& target, const OpenImageOptions& inputs);
+/// Writes target.normals. `half_float`: the codes came as 16-bit floats and go on as such, where
+/// the format has them and no type is asked for. Throws IoError or InvalidInput.
+void write_normals(const NormalMap& normals, bool half_float, const ImageExport& target);
+
 /// Everything that one run on a picture did.
 struct ImageJob {
   OpenedImage opened;
