@@ -33,7 +33,7 @@ function(normalshop_test name)
   if(TEST_SUITES)
     normalshop_add_suites(test_${name} ${TEST_SOURCES})
   else()
-    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+    gtest_discover_tests(test_${name} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()
 endfunction()
 
