@@ -55,8 +55,6 @@ void add_convert_verb(CommandLine& program) {
              "DirectX")
       .one_of({"up", "down"});
   verb.flag("--normalize", flags.options.normalize, "Gives every normal length 1");
-  verb.flag("--swap-red-green", flags.options.swap_red_green,
-            "Exchanges x and y, before green is turned");
   flags.image.add_bits(verb);
   verb.flag("--json", flags.json, "Print the result as JSON");
 }

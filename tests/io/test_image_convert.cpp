@@ -62,7 +62,7 @@ TEST_F(ImageConvert, NothingAskedChangesNothing) {
   EXPECT_TRUE(std::equal(after.data(), after.data() + after.size_bytes(), before.data()));
 }
 
-TEST_F(ImageConvert, GreenIsTurnedAndBackAgain) {
+TEST_F(ImageConvert, GreenIsTurned) {
   convert("down.png", {.green_down = true});
   const NormalMap before = open_image(input_).document.normals();
   const NormalMap down = written("down.png", true);
@@ -91,19 +91,31 @@ TEST_F(ImageConvert, NormalizingGivesLengthsOfOne) {
   EXPECT_EQ(convert("again.png", {.normalize = true}).not_unit, 0U);
 }
 
-TEST_F(ImageConvert, SwapsChannelsAndBits) {
-  convert("swapped.exr", {.type = CodeType::F32, .swap_red_green = true});
-  const NormalMap before = open_image(input_).document.normals();
-  const RawImage codes = read_image(folder_ / "swapped.exr");
-  ASSERT_EQ(codes.type(), CodeType::F32);
-  const NormalMap after(codes, NormalConvention{});
-  for (int y = 0; y < size; y += 5) {
-    for (int x = 1; x < size; x += 3) {
-      if (x == 5 && y == 3) continue;
-      const Vec3f n = before.normal(x, y);
-      EXPECT_LT((after.normal(x, y) - Vec3f(n.y(), n.x(), n.z())).norm(), 1e-4F);
+TEST_F(ImageConvert, MoreBitsHoldLengthsOfOneBetter) {
+  convert("8.png", {.type = CodeType::U8});
+  input_.normals = folder_ / "8.png";
+  convert("16.png", {.type = CodeType::U16, .normalize = true});
+  const NormalMap after = written("16.png");
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (x != 5 || y != 3) EXPECT_NEAR(after.vector(x, y).norm(), 1.0F, 5e-5F) << x << " " << y;
     }
   }
+  input_.normals = folder_ / "16.png";
+  EXPECT_EQ(convert("again.png", {.normalize = true}).not_unit, 0U);
+}
+
+TEST_F(ImageConvert, HalfFloatsThatAreUnitStay) {
+  convert("unit.png", {.normalize = true});
+  const RawImage codes =
+      NormalMap(read_image(folder_ / "unit.png"), {}).encode(CodeType::F32, NormalConvention{});
+  write_image(folder_ / "half.exr", codes, {.half_float = true});
+  input_.normals = folder_ / "half.exr";
+  EXPECT_EQ(convert("again.exr", {.normalize = true}).not_unit, 0U);
+  const RawImage before = read_image(folder_ / "half.exr");
+  const RawImage after = read_image(folder_ / "again.exr");
+  ASSERT_EQ(after.size_bytes(), before.size_bytes());
+  EXPECT_TRUE(std::equal(after.data(), after.data() + after.size_bytes(), before.data()));
 }
 
 TEST_F(ImageConvert, DoesNotOverwriteItsInput) {

@@ -1,10 +1,9 @@
 #include "normalshop/io/image_convert.h"
 
+#include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
-#include "normalshop/io/image_file.h"
 #include "normalshop/io/image_job.h"
 
 namespace normalshop {
@@ -12,29 +11,36 @@ namespace normalshop {
 namespace {
 
 /// Rounding x, y and z to codes moves a length by this much at most.
-float length_step(CodeType type) {
-  const float scale = code_range(type, {}).scale;
-  return type == CodeType::F32 ? 1e-6F : 0.5F * std::sqrt(3.0F) * scale;
+float length_step(CodeType type, const NormalConvention& convention, bool half_float) {
+  const float half_root_three = 0.5F * std::sqrt(3.0F);
+  if (type != CodeType::F32) return half_root_three * code_range(type, convention).scale;
+  const float components = convention.signed_float ? 1.0F : 2.0F;
+  return half_float ? half_root_three * components * 0x1p-11F : 1e-6F;
 }
 
-void convert_row(NormalMap& map, int y, const ConvertOptions& options, ConvertReport& report) {
-  const auto width = static_cast<std::size_t>(map.width());
-  std::vector<Vec3f> normals(width);
-  std::vector<Vec3f> vectors(width);
-  map.read_normals(y, normals.data());
-  map.read_vectors(y, vectors.data());
-  const float step = length_step(map.codes().type());
-  for (std::size_t x = 0; x < width; ++x) {
-    Vec3f normal = normals[x];
-    const bool directed = !normal.isZero();
-    const bool unit = std::abs(vectors[x].norm() - 1.0F) <= step;
-    if (!directed) ++report.without_direction;
-    if (directed && !unit) ++report.not_unit;
-    if (options.swap_red_green) std::swap(normal.x(), normal.y());
-    const bool changes = options.swap_red_green || (options.normalize && !unit);
-    if (directed && changes) map.set_normal(static_cast<int>(x), y, normal);
+struct Converter {
+  NormalMap& map;
+  float step;  ///< of the imported codes
+  float kept;  ///< lengths this close to 1 stay as they are
+  ConvertReport report;
+
+  void convert_row(int y, bool normalize) {
+    const auto width = static_cast<std::size_t>(map.width());
+    std::vector<Vec3f> normals(width);
+    std::vector<Vec3f> vectors(width);
+    map.read_normals(y, normals.data());
+    map.read_vectors(y, vectors.data());
+    for (std::size_t x = 0; x < width; ++x) {
+      if (normals[x].isZero()) {
+        ++report.without_direction;
+        continue;
+      }
+      const float error = std::abs(vectors[x].norm() - 1.0F);
+      if (error > step) ++report.not_unit;
+      if (normalize && error > kept) map.set_normal(static_cast<int>(x), y, normals[x]);
+    }
   }
-}
+};
 
 }  // namespace
 
@@ -42,11 +48,15 @@ ConvertReport convert_image(const OpenImageOptions& input, const OpenedImage& op
                             const std::filesystem::path& file, const ConvertOptions& options) {
   check_not_input(file, input);
   NormalMap map = opened.document.normals();
-  ConvertReport report;
-  report.pixels = static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height());
-  for (int y = 0; y < map.height(); ++y) convert_row(map, y, options, report);
+  const CodeType type = map.codes().type();
+  const float step = length_step(type, map.convention(), opened.half_float);
+  const float written = options.type ? length_step(*options.type, map.convention(), false) : step;
+  Converter converter{map, step, std::min(step, written), {}};
+  converter.report.pixels =
+      static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height());
+  for (int y = 0; y < map.height(); ++y) converter.convert_row(y, options.normalize);
   write_normals(map, opened.half_float, {file, {}, options.type, options.green_down});
-  return report;
+  return converter.report;
 }
 
 }  // namespace normalshop

@@ -12,8 +12,7 @@ namespace normalshop {
 struct ConvertOptions {
   std::optional<bool> green_down = std::nullopt;  ///< of the written codes
   std::optional<CodeType> type = std::nullopt;
-  bool normalize = false;       ///< every normal gets length 1, as exactly as its codes can say
-  bool swap_red_green = false;  ///< x and y change places, before green is turned
+  bool normalize = false;  ///< every normal gets length 1, as exactly as the written codes can say
 };
 
 struct ConvertReport {
