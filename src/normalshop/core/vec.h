@@ -17,4 +17,10 @@ using Mat2f = Eigen::Matrix<float, 2, 2, Eigen::DontAlign>;
 using Mat3f = Eigen::Matrix3f;
 using Vec3u = Eigen::Matrix<std::uint32_t, 3, 1>;
 
+/// z of the cross product of a and b in the plane: positive where b lies to the left of a.
+template <class A, class B>
+typename A::Scalar cross(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 }  // namespace normalshop

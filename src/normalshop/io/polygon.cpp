@@ -21,8 +21,6 @@ Vec3d area_vector(std::span<const Vec3f> p) {
   return sum;
 }
 
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 bool uses_first_diagonal(std::span<const Vec3f> p, std::span<const Vec2f> uvs) {
   // A half that turns the other way lies outside the quad.
   const Vec3d area = area_vector(p);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int cell_size = 8;
 /// Nearer to the line than this, its own orientation says where inside is.
-constexpr float on_line = 1e-3F;
+constexpr float touching = 1e-3F;
 /// Slope jumps are spread over this many pixels on each side, but not over more of the profile.
 constexpr float jump_radius = 1.5F;
 constexpr float largest_jump_share = 0.25F;
@@ -20,8 +20,6 @@ constexpr float largest_jump_share = 0.25F;
 float jump_share(float half_width) {
   return std::min(jump_radius / half_width, largest_jump_share);
 }
-
-float cross(const Vec2f& a, const Vec2f& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Left as seen, although y runs down.
 Vec2f left_of(const Vec2f& direction) { return {direction.y(), -direction.x()}; }
@@ -217,7 +215,7 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
   const Vec2f away =
       joint && distance > 0.0F ? Vec2f(near.offset / distance) : Vec2f(side * left_of(tangent));
   if (shape.closed) {
-    side = distance < on_line ? side * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
+    side = distance < touching ? side * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
   }
   const float u = side * distance / half_width;
   if (pattern_) return patterned(shape, u, side * away, v);

@@ -8,8 +8,6 @@ namespace normalshop {
 
 namespace {
 
-float cross(const Vec2f& a, const Vec2f& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 int clamped_int(float x, int low, int high) {
   return static_cast<int>(
       std::clamp(x, static_cast<float>(low), static_cast<float>(std::max(low, high))));

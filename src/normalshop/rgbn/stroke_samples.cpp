@@ -15,8 +15,6 @@ constexpr int starts_a_point = 8;
 constexpr double candidate_step = 0.125;
 constexpr double least_gap = 0.875;
 
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 std::vector<Vec2d> samples(const PolylineByLength& line, int count, bool reversed) {
   std::vector<Vec2d> points;
   Vec2d center = Vec2d::Zero();

@@ -7,9 +7,7 @@
 namespace normalshop {
 namespace {
 
-constexpr int max_triangles = 256;
-
-double cross(const Vec2d& a, const Vec2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+constexpr int most_steps = 256;
 
 /// An edge unfolded into the plane; what lies beyond is on its left.
 struct UnfoldedEdge {
@@ -75,7 +73,7 @@ SurfacePoint walk(const Mesh& mesh, const Topology& topology, const SurfaceWalk&
   UnfoldedEdge e{way.edge, {0.0, 0.0}, {leave.norm(), 0.0}};
   const Vec2d start = way.start * e.second;
   const Vec2d target(way.target.x(), std::max(0.0, way.target.y()));
-  for (int step = 0; step < max_triangles; ++step) {
+  for (int step = 0; step < most_steps; ++step) {
     const std::uint32_t across = topology.neighbor[e.edge];
     if (across == no_edge || mesh.texture_sets[across / 3] != mesh.texture_sets[way.edge / 3]) {
       break;
