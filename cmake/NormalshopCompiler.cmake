@@ -33,7 +33,8 @@ if(NORMALSHOP_SANITIZE)
   target_compile_options(normalshop_compiler INTERFACE -fsanitize=address,undefined
                                                        -fno-sanitize-recover=all -fno-omit-frame-pointer)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    # Elsewhere these are half of the compile time: ASan sees null and sizes, nothing casts pointers.
+    # Elsewhere these are half of the compile time: ASan sees what is null or too small, classes are not
+    # cast down, and kernels load from any address.
     target_compile_options(normalshop_compiler
                            INTERFACE $<$<NOT:${reads}>:-fno-sanitize=null,alignment,object-size,vptr>)
   endif()
@@ -41,7 +42,7 @@ if(NORMALSHOP_SANITIZE)
 endif()
 
 if(NORMALSHOP_BUILD_FUZZERS)
-  # What -fsanitize=fuzzer-no-link turns on, in words that precompiled headers need not share.
+  # What of -fsanitize=fuzzer-no-link matters, in words that precompiled headers need not share.
   target_compile_options(
     normalshop_compiler
     INTERFACE $<${reads}:-fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table>)

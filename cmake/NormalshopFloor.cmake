@@ -14,14 +14,31 @@ function(normalshop_floor name)
     PRIVATE ${FLOOR_PRIVATE_LIBRARIES} normalshop::floor_compiler)
   normalshop_precompiled(normalshop_${name} floor)
   set_target_properties(normalshop_${name} PROPERTIES NORMALSHOP_READS ${FLOOR_READS})
+  normalshop_join(normalshop_${name})
 endfunction()
 
-# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [SUITES]): one GoogleTest program for a
-# folder of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers
-# without optimisation. SUITES: the program takes long to start, so ctest starts it once a suite instead
+# normalshop_join(TARGET): with NORMALSHOP_UNITY, compiles several sources of a target in one go. Kernels
+# for several instruction sets include themselves, so they go alone.
+function(normalshop_join target)
+  if(NOT NORMALSHOP_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    file(STRINGS ${source} kernels REGEX "foreach_target" LIMIT_COUNT 1)
+    if(kernels)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+endfunction()
+
+# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [ALONE] [SUITES]): one GoogleTest
+# program for a folder of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers
+# without optimisation. ALONE: the sources share names and are never compiled in one go. SUITES: the program takes long to start, so ctest starts it once a suite instead
 # of once a test.
 function(normalshop_test name)
-  cmake_parse_arguments(TEST "SUITES" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
+  cmake_parse_arguments(TEST "ALONE;SUITES" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
@@ -29,6 +46,9 @@ function(normalshop_test name)
   normalshop_precompiled(test_${name} test)
   if(NORMALSHOP_SANITIZE AND TEST_LOOPS)
     set_source_files_properties(${TEST_LOOPS} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
+  endif()
+  if(NOT TEST_ALONE)
+    normalshop_join(test_${name})
   endif()
   if(TEST_SUITES)
     normalshop_add_suites(test_${name} ${TEST_SOURCES})
@@ -43,6 +63,7 @@ function(normalshop_add_suites program)
     DIRECTORY
     APPEND
     PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
+  set(suites)
   foreach(source ${ARGN})
     file(STRINGS ${source} lines REGEX "^TEST(_F|_P)?\\(")
     list(TRANSFORM lines REPLACE "^TEST(_F|_P)?\\(([^,]*),.*" "\\2")
@@ -52,7 +73,8 @@ function(normalshop_add_suites program)
   set(all_skipped "PASSED  . 0 tests[.]\n(.  SKIPPED .[^\n]*\n)+$")
   foreach(suite ${suites})
     add_test(NAME ${suite} COMMAND ${program} --gtest_filter=${suite}.*:*/${suite}.*)
-    set_tests_properties(${suite} PROPERTIES TIMEOUT 900 SKIP_REGULAR_EXPRESSION "${all_skipped}")
+    set_tests_properties(${suite} PROPERTIES TIMEOUT 900 SKIP_REGULAR_EXPRESSION "${all_skipped}"
+                                                FAIL_REGULAR_EXPRESSION "Running 0 tests")
   endforeach()
 endfunction()
 

@@ -16,7 +16,7 @@ struct CheckFlags {
   bool json = false;
 };
 
-void print_text(const Value& report) {
+void print_check(const Value& report) {
   const auto number = [&](const char* name) { return *report.find(name)->number(); };
   const Value& lengths = *report.find("lengths");
   std::printf("conventions: %s\n", report.find("conventions")->text()->c_str());
@@ -36,7 +36,7 @@ void run_check(const CheckFlags& flags) {
   if (flags.json) {
     std::fputs(to_json(report).c_str(), stdout);
   } else {
-    print_text(report);
+    print_check(report);
   }
   if (flags.picture.empty()) return;
   const float largest = write_curl_picture(opened, files.border, flags.largest, flags.picture);

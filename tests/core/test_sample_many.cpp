@@ -11,7 +11,7 @@
 namespace normalshop {
 namespace {
 
-RawImage random_codes(int width, int height, int channels, CodeType type) {
+RawImage codes_to_sample(int width, int height, int channels, CodeType type) {
   RawImage codes(width, height, channels, type);
   Random random(17);
   for (int y = 0; y < height; ++y) {
@@ -62,7 +62,7 @@ TEST(SampleMany, normals_are_those_read_one_by_one) {
     for (const CodeType type : {CodeType::U8, CodeType::U16, CodeType::F32}) {
       NormalConvention convention;
       convention.green_down = channels == 4;
-      NormalMap map(random_codes(150, 91, channels, type), convention);
+      NormalMap map(codes_to_sample(150, 91, channels, type), convention);
       for (const float spread : {0.03F, 0.5F, 3.0F}) {
         EXPECT_LT(largest_difference(map, spread), 2e-6F) << channels;
       }
@@ -74,18 +74,18 @@ TEST(SampleMany, normals_are_those_read_one_by_one) {
 
 TEST(SampleMany, small_maps_and_two_channels) {
   for (const int size : {1, 2, 3}) {
-    const NormalMap map(random_codes(size, size, 3, CodeType::U8), {});
+    const NormalMap map(codes_to_sample(size, size, 3, CodeType::U8), {});
     EXPECT_LT(largest_difference(map, 2.0F), 2e-6F) << size;
   }
   NormalConvention convention;
   convention.two_channel = true;
-  const NormalMap map(random_codes(64, 64, 2, CodeType::U8), convention);
+  const NormalMap map(codes_to_sample(64, 64, 2, CodeType::U8), convention);
   EXPECT_LT(largest_difference(map, 2.0F), 2e-6F);
 }
 
 TEST(SampleMany, colors_are_those_read_one_by_one) {
   for (const int channels : {1, 3, 4}) {
-    const ColorMap map(random_codes(70, 130, channels, CodeType::U8), Vec3f(0.5F, 1.0F, 2.0F));
+    const ColorMap map(codes_to_sample(70, 130, channels, CodeType::U8), Vec3f(0.5F, 1.0F, 2.0F));
     EXPECT_LT(largest_difference(map, 0.3F), 2e-6F) << channels;
     EXPECT_LT(largest_difference(map, 3.0F), 2e-6F) << channels;
   }

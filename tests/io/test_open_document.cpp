@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "io/gltf_builder.h"
 #include "io/temp_folder.h"
 #include "support/meshes.h"
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@
 namespace normalshop {
 namespace {
 
+using test::mentions;
 using test::TempFolder;
 
 /// Two squares side by side, each its own texture set: "map" and "second".
@@ -136,7 +138,7 @@ RawImage tilted(int size) {
   return codes;
 }
 
-bool same_codes(const RawImage& a, const RawImage& b) {
+bool have_same_codes(const RawImage& a, const RawImage& b) {
   return a.type() == b.type() && a.size_bytes() == b.size_bytes() &&
          std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
@@ -154,7 +156,7 @@ TEST(NormalScale, LeavesCodesAndTheModelsScale) {
     const Vec3f stored = NormalMap(codes, {}).normal(3, 2);
     const Vec3f shown = Vec3f(0.5F * stored.x(), 0.5F * stored.y(), stored.z()).normalized();
     EXPECT_LT(angle_degrees(map.normal(3, 2), shown), 0.3);
-    EXPECT_TRUE(same_codes(export_map(opened, 0, {}), codes));
+    EXPECT_TRUE(have_same_codes(export_map(opened, 0, {}), codes));
     std::vector<std::string> notes;
     const auto files = export_document(opened, folder / "out", {}, notes);
     EXPECT_EQ(scale_of(folder / "out/scaled.gltf"), 0.5F);
@@ -199,11 +201,6 @@ TEST(ExportMaps, FollowsThePreset) {
   const RawImage directx = export_map(opened, 0, {ExportPreset::DirectX, {}});
   EXPECT_NEAR(directx.code(2, 3, 1), 75.0F, 1.0F);
   EXPECT_EQ(export_map(opened, 0, {{}, CodeType::F32}).type(), CodeType::F32);
-}
-
-bool mentions(const std::vector<std::string>& notes, const std::string& words) {
-  return std::any_of(notes.begin(), notes.end(),
-                     [&](const std::string& note) { return note.find(words) != note.npos; });
 }
 
 TEST(ExportMaps, WritesNoMapForASetWithoutOneThatNoEditReached) {
@@ -261,7 +258,7 @@ TEST(ExportMaps, HalfFloatsStayHalf) {
     std::vector<std::string> notes;
     ImageTraits traits;
     export_document(opened, folder / "out", {}, notes);
-    EXPECT_TRUE(same_codes(read_image(folder / "out/map_normal.exr", &traits), codes));
+    EXPECT_TRUE(have_same_codes(read_image(folder / "out/map_normal.exr", &traits), codes));
     EXPECT_EQ(traits.half_float, half);
     export_document(opened, folder / "out", {{}, CodeType::F32}, notes);
     read_image(folder / "out/map_normal.exr", &traits);

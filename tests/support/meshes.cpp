@@ -107,7 +107,7 @@ Mesh cube(int n) {
     const Vec3f& up = faces[f][2];
     const Vec2f corner(static_cast<float>(f % 3) / 3.0F + 0.04F,
                        static_cast<float>(f / 3) / 2.0F + 0.04F);
-    const Vec2f size(1.0F / 3.0F - 0.08F, 0.5F - 0.08F);
+    const Vec2f extent(1.0F / 3.0F - 0.08F, 0.5F - 0.08F);
     grid(builder, n, n, [&](float s, float t) {
       // Exactly antisymmetric, so that neighbouring faces' positions are equal as numbers.
       const auto signed_place = [n](float a) {
@@ -115,7 +115,7 @@ Mesh cube(int n) {
         return (2.0F * std::round(a * count) - count) / count;
       };
       const Vec3f position = normal + signed_place(s) * right + signed_place(t) * up;
-      const Vec2f uv = corner + Vec2f(s, 1.0F - t).cwiseProduct(size);
+      const Vec2f uv = corner + Vec2f(s, 1.0F - t).cwiseProduct(extent);
       return MeshBuilder::Corner{position, normal, uv};
     });
   }

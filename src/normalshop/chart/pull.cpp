@@ -11,7 +11,7 @@ namespace normalshop {
 namespace {
 
 /// Charts are pulled in squares of this side, which read a small part of the atlas each.
-constexpr int block = PixelRow::capacity;
+constexpr int pull_block = PixelRow::capacity;
 
 /// The pull of one chart: the work of one task.
 class Pull {
@@ -230,14 +230,14 @@ void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart
   chart.base_normal.resize(width, height);
   chart.normal.resize(options.normals ? width : 0, options.normals ? height : 0);
   chart.albedo.resize(options.albedo ? width : 0, options.albedo ? height : 0);
-  const int columns = (width + block - 1) / block;
-  const int rows = (height + block - 1) / block;
+  const int columns = (width + pull_block - 1) / pull_block;
+  const int rows = (height + pull_block - 1) / pull_block;
   const auto fill = [&](std::size_t begin, std::size_t end) {
     Pull pull(mesh, storage, options, chart);
     for (std::size_t i = begin; i < end; ++i) {
-      const int x = static_cast<int>(i) % columns * block;
-      const int y = static_cast<int>(i) / columns * block;
-      pull.fill(intersect({x, y, x + block, y + block}, chart.ids.triangle.rect()));
+      const int x = static_cast<int>(i) % columns * pull_block;
+      const int y = static_cast<int>(i) / columns * pull_block;
+      pull.fill(intersect({x, y, x + pull_block, y + pull_block}, chart.ids.triangle.rect()));
     }
   };
   parallel_for(static_cast<std::size_t>(columns * rows), 16, fill);

@@ -31,8 +31,6 @@ struct Tally {
   }
 };
 
-constexpr int tile_size = NormalMap::tile_size;
-
 /// The push into one texture set.
 class SetPush {
  public:
@@ -55,7 +53,7 @@ class SetPush {
   /// What a task keeps from tile to tile.
   struct Task {
     Cache triangles;
-    std::array<std::vector<Run>, tile_size> runs;  // by row of the tile
+    std::array<std::vector<Run>, NormalMap::tile_size> runs;  // by row of the tile
     TexelBatch batch;
     PerLane<int> columns;
     PerLane<std::uint32_t> owners;

@@ -10,9 +10,9 @@ namespace normalshop {
 
 namespace {
 
-constexpr int tile_size = NormalMap::tile_size;
+constexpr int tile_side = NormalMap::tile_size;
 
-int tiles_along(int texels) { return (texels + tile_size - 1) / tile_size; }
+int tiles_along(int texels) { return (texels + tile_side - 1) / tile_side; }
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void PushCandidates::mark_tiles(std::uint32_t triangle) {
   const int x1 = std::min(floor_to_int(high.x()), x0 + width_);
   const int y1 = std::min(floor_to_int(high.y()), y0 + height_);
   const auto next = [](int v, int n, int w) {  // first texel of the next tile, or of the next map
-    return v + std::min(tile_size - w % tile_size, n - w);
+    return v + std::min(tile_side - w % tile_side, n - w);
   };
   for (int y = y0; y <= y1;) {
     const int wy = wrap(y, height_);
@@ -75,7 +75,7 @@ void PushCandidates::mark_tiles(std::uint32_t triangle) {
       const int wx = wrap(x, width_);
       // Several threads may mark one tile; the mark is the same.
       std::atomic_ref(
-          tiles_[static_cast<std::size_t>(wy / tile_size * tile_columns_ + wx / tile_size)])
+          tiles_[static_cast<std::size_t>(wy / tile_side * tile_columns_ + wx / tile_side)])
           .store(1, std::memory_order_relaxed);
       x = next(x, width_, wx);
     }
@@ -87,9 +87,9 @@ std::vector<Rect> PushCandidates::tiles() const {
   std::vector<Rect> out;
   for (int i = 0; i < static_cast<int>(tiles_.size()); ++i) {
     if (tiles_[static_cast<std::size_t>(i)] == 0) continue;
-    const int x = i % tile_columns_ * tile_size;
-    const int y = i / tile_columns_ * tile_size;
-    out.push_back({x, y, std::min(x + tile_size, width_), std::min(y + tile_size, height_)});
+    const int x = i % tile_columns_ * tile_side;
+    const int y = i / tile_columns_ * tile_side;
+    out.push_back({x, y, std::min(x + tile_side, width_), std::min(y + tile_side, height_)});
   }
   return out;
 }

@@ -12,7 +12,7 @@ namespace normalshop {
 
 namespace {
 
-constexpr std::size_t rows_per_task = 64;
+constexpr std::size_t resized_rows_per_task = 64;
 constexpr int padding = 2;  ///< cubic taps reach this far beyond the border
 
 /// Sources and weights of the targets along one axis: 4 cubic taps each when growing, the covered
@@ -177,18 +177,19 @@ NormalMap resize(const NormalMap& map, int width, int height, CodeType type) {
   const std::vector<int> columns = nearest(map.width(), width);
   const std::vector<int> sources = nearest(map.height(), height);
   RawImage image(width, height, map.codes().channels(), type);
-  parallel_for(static_cast<std::size_t>(height), rows_per_task, [&](std::size_t a, std::size_t b) {
-    RowCache rows(map, across, width, down.count());
-    Plane sum(static_cast<std::size_t>(width * plane_count(map)));
-    std::vector<Vec3f> normals(static_cast<std::size_t>(width));
-    for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
-      weigh_rows(rows, down, y, sum);
-      to_normals(sum, normals);
-      codes::encode_texels(normals.data(), width, convention, image, 0, y);
-      codes::copy_other_channels(map.codes(), sources[static_cast<std::size_t>(y)], columns, image,
-                                 y, codes::normal_channels(convention));
-    }
-  });
+  parallel_for(
+      static_cast<std::size_t>(height), resized_rows_per_task, [&](std::size_t a, std::size_t b) {
+        RowCache rows(map, across, width, down.count());
+        Plane sum(static_cast<std::size_t>(width * plane_count(map)));
+        std::vector<Vec3f> normals(static_cast<std::size_t>(width));
+        for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
+          weigh_rows(rows, down, y, sum);
+          to_normals(sum, normals);
+          codes::encode_texels(normals.data(), width, convention, image, 0, y);
+          codes::copy_other_channels(map.codes(), sources[static_cast<std::size_t>(y)], columns,
+                                     image, y, codes::normal_channels(convention));
+        }
+      });
   return {std::move(image), convention};
 }
 

@@ -35,9 +35,9 @@ double dot(const GridField<A>& a, const GridField<B>& b) {
 }
 
 /// The four weights around a corner, beginning with those of the row above.
-struct Weights {
+struct CornerWeights {
   double at[4];
-  Weights(const float* above, const float* below, int x)
+  CornerWeights(const float* above, const float* below, int x)
       : at{static_cast<double>(above[x - 1]), static_cast<double>(above[x]),
            static_cast<double>(below[x - 1]), static_cast<double>(below[x])} {}
   double sum() const { return (at[0] + at[1]) + (at[2] + at[3]); }
@@ -63,8 +63,8 @@ CornerHeights::CornerHeights(MaskView weights, bool wraps, Ends ends)
   });
   for_each_row(shape_, [&](int y) {
     for (int x = 0; x < shape_.numbers(); ++x) {
-      const Weights even(pixels(2 * y - 1), pixels(2 * y), x);
-      const Weights odd(pixels(2 * y), pixels(2 * y + 1), x);
+      const CornerWeights even(pixels(2 * y - 1), pixels(2 * y), x);
+      const CornerWeights odd(pixels(2 * y), pixels(2 * y + 1), x);
       const bool fixed = ends == Ends::Zero;
       free_.row(y)[x] = even.sum() > 0.0 && !(fixed && !even.whole()) ? 1.0F : 0.0F;
       const bool free = odd.sum() > 0.0 && !(fixed && !odd.whole());
@@ -86,13 +86,13 @@ Stencil CornerHeights::stencil() const {
       const auto odd = [&](int dx, int dy) {  // the odd corner there and its weights
         const int row = 2 * (y + dy);
         return std::pair(inverse_.row(y + dy)[x + dx],
-                         Weights(pixels(row), pixels(row + 1), x + dx));
+                         CornerWeights(pixels(row), pixels(row + 1), x + dx));
       };
       const auto [i_nw, nw] = odd(-1, -1);
       const auto [i_ne, ne] = odd(1, -1);
       const auto [i_sw, sw] = odd(-1, 0);
       const auto [i_se, se] = odd(1, 0);
-      const auto part = [](double inverse, const Weights& w, std::size_t k, std::size_t l) {
+      const auto part = [](double inverse, const CornerWeights& w, std::size_t k, std::size_t l) {
         return w.at[k] * w.at[l] * inverse;
       };
       const double center = nw.at[3] - part(i_nw, nw, 3, 3) + (ne.at[2] - part(i_ne, ne, 2, 2)) +
@@ -149,7 +149,7 @@ CornerHeights::Right CornerHeights::right_side(SlopeView slopes) const {
     };
     for (int x = 0; x < shape_.numbers(); ++x) {
       if (free_.row(y)[x] == 0.0F) continue;
-      const Weights w(pixels(2 * y - 1), pixels(2 * y), x);
+      const CornerWeights w(pixels(2 * y - 1), pixels(2 * y), x);
       const auto [nw, ne] = from_odd(y - 1, x);
       const auto [sw, se] = from_odd(y, x);
       right.even.row(y)[x] =

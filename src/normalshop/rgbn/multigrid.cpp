@@ -12,7 +12,7 @@ constexpr std::size_t direct_limit = 10000;
 constexpr int narrow = 5;
 /// Steps of the two Jacobi sweeps: Chebyshev's for eigenvalues from 0.6 to 1.6 of the operator over
 /// its diagonal. Inside a domain rough errors have 2/3 to 4/3, at borders up to 2.
-constexpr std::array<float, 2> steps = {1.3405F, 0.6877F};
+constexpr std::array<float, 2> smoothing_steps = {1.3405F, 0.6877F};
 
 using Row = Eigen::Map<Eigen::ArrayXf>;
 using ConstRow = Eigen::Map<const Eigen::ArrayXf>;
@@ -86,7 +86,7 @@ struct Multigrid::Level {
   }
   void start() {
     for_each_row(a.shape(), [&](int y) {
-      numbers(x, y) = steps[0] * numbers(inverse, y) * numbers(b, y);
+      numbers(x, y) = smoothing_steps[0] * numbers(inverse, y) * numbers(b, y);
       x.close(y);
     });
   }
@@ -196,7 +196,7 @@ void Multigrid::cycle(std::size_t level) {
   Level& fine = levels_[level];
   if (level + 1 == levels_.size()) return coarsest_->solve(fine.b, fine.x);
   fine.start();
-  fine.smooth(steps[1]);
+  fine.smooth(smoothing_steps[1]);
   for_each_row(fine.a.shape(), [&](int y) {
     numbers(fine.next, y) = residual(fine.a, fine.x, fine.b, y);
     fine.next.close(y);
@@ -206,8 +206,8 @@ void Multigrid::cycle(std::size_t level) {
                [&](int y) { restrict_row(fine.weights, fine.next, y, coarse.b); });
   cycle(level + 1);
   for_each_row(fine.a.shape(), [&](int y) { add_interpolated(fine.weights, coarse.x, y, fine.x); });
-  fine.smooth(steps[1]);
-  fine.smooth(steps[0]);
+  fine.smooth(smoothing_steps[1]);
+  fine.smooth(smoothing_steps[0]);
 }
 
 const GridField<float>& Multigrid::solve(const GridField<double>& right) {

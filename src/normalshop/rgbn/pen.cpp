@@ -12,7 +12,7 @@ namespace normalshop {
 namespace {
 
 /// Narrower strokes are averaged over several positions in a pixel.
-constexpr float narrow = 4.0F;
+constexpr float narrow_width = 4.0F;
 constexpr int narrow_grid = 3;
 /// A curve between two stroke points is cut into at most this many pieces.
 constexpr int most_pieces = 1000;
@@ -122,7 +122,7 @@ PolylineField make_field(std::span<const Stroke> strokes, const PenOptions& o) {
   return {shapes, profile, o.height, FieldCoverage::Band};
 }
 
-int grid(const PenOptions& o) { return o.width < narrow ? narrow_grid : 1; }
+int grid(const PenOptions& o) { return o.width < narrow_width ? narrow_grid : 1; }
 
 }  // namespace
 

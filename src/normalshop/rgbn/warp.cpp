@@ -20,7 +20,7 @@ constexpr double most_samples = 64.0;
 constexpr double least_excess = 0.02;
 /// Less than this weight of valid pixels counts as none.
 constexpr float least_weight = 1e-4F;
-constexpr double least_area = 1e-6;
+constexpr double least_determinant = 1e-6;
 
 /// A place between pixel centres.
 struct Place {
@@ -219,7 +219,7 @@ Vec2f turn(const Vec2f& slopes, const Eigen::Matrix2d& jacobian, WarpHeights hei
   if (jacobian == Eigen::Matrix2d::Identity()) return slopes;
   double lift = 1.0;
   if (heights == WarpHeights::Grow) {
-    lift = 1.0 / std::sqrt(std::max(std::abs(determinant(jacobian)), least_area));
+    lift = 1.0 / std::sqrt(std::max(std::abs(determinant(jacobian)), least_determinant));
   }
   const double x = slopes.x();
   const double y = slopes.y();

@@ -26,7 +26,7 @@ constexpr float between_weight = 0.3F;
 /// Degrees between both sides' base normals: up to the first they show one surface, from the second
 /// on (hard_edge_degrees) an edge of it.
 constexpr float same_surface = 5.0F;
-constexpr std::size_t grain = 512;
+constexpr std::size_t fit_grain = 512;
 
 using Plane = Eigen::Matrix<double, 3, 2>;
 
@@ -165,7 +165,7 @@ void SeamFit::Solver::linearise() {
   planes_.resize(texel_of_.size());
   for (std::size_t i = 0; i < planes_.size(); ++i) planes_[i] = plane_of(normals_[texel_of_[i]]);
   rows_.resize(samples_.size());
-  parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows_.size(), fit_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) linearise(i);
   });
   index_uses();
@@ -192,7 +192,7 @@ void SeamFit::Solver::index_uses() {
 
 std::vector<Vec2d> SeamFit::Solver::transposed(const std::vector<Vec3d>& v) const {
   std::vector<Vec2d> out(texel_of_.size());
-  parallel_for(out.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(out.size(), fit_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Vec2d sum(0.0, 0.0);
       for (std::size_t u = first_use_[i]; u < first_use_[i + 1]; ++u) {
@@ -207,7 +207,7 @@ std::vector<Vec2d> SeamFit::Solver::transposed(const std::vector<Vec3d>& v) cons
 /// (J^T J + stiffness) x
 std::vector<Vec2d> SeamFit::Solver::normal_product(const std::vector<Vec2d>& x) const {
   std::vector<Vec3d> v(rows_.size());
-  parallel_for(v.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(v.size(), fit_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       Vec3d sum(0.0, 0.0, 0.0);
       for (int i = 0; i < rows_[r].count; ++i) {

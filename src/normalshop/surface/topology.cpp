@@ -12,7 +12,7 @@
 namespace normalshop {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t topology_grain = 4096;
 /// Larger groups of edges between the same two vertices are paired without looking at UVs.
 constexpr std::size_t largest_matched_group = 32;
 
@@ -177,7 +177,7 @@ std::vector<std::uint32_t> pair_edges(std::span<const std::uint32_t> vertex,
   const EdgePairing pairing(vertex, prefer, neighbor);
   // Edges by their lower vertex; those of degenerate triangles go to a list of their own.
   std::vector<std::uint32_t> owner(vertex.size());
-  parallel_for(vertex.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex.size(), topology_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto edge = static_cast<std::uint32_t>(i);
       owner[i] = pairing.degenerate(edge) ? vertex_count : pairing.low(edge);
@@ -185,7 +185,7 @@ std::vector<std::uint32_t> pair_edges(std::span<const std::uint32_t> vertex,
   });
   CornerLists buckets = corners_of_vertices(owner, vertex_count + 1);
   std::mutex mutex;
-  parallel_for(vertex_count, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex_count, topology_grain, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> found;
     for (std::size_t v = begin; v < end; ++v) {
       const std::span<std::uint32_t> bucket(buckets.corners.data() + buckets.start[v],
@@ -216,7 +216,7 @@ Topology make_topology(const Mesh& mesh) {
   topology.kind.resize(mesh.corner_count());
   const PreferPair no_preference;
   const EdgePairing pairing(topology.vertex, no_preference, topology.neighbor);
-  parallel_for(mesh.corner_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.corner_count(), topology_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto edge = static_cast<std::uint32_t>(i);
       const std::uint32_t across = topology.neighbor[edge];

@@ -11,7 +11,7 @@
 namespace normalshop {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t normals_grain = 4096;
 
 Vec3d edge(const Mesh& mesh, std::uint32_t from, std::uint32_t to) {
   return mesh.position(to).cast<double>() - mesh.position(from).cast<double>();
@@ -48,7 +48,7 @@ Vec3f first_face_normal(const Mesh& mesh, std::span<const std::uint32_t> corners
 void angle_weighted(Mesh& mesh) {
   const Welding welding = weld_positions(mesh);
   const CornerLists lists = corners_of_vertices(welding.vertex, welding.vertex_count);
-  parallel_for(welding.vertex_count, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(welding.vertex_count, normals_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Vec3d sum = Vec3d::Zero();
       for (const std::uint32_t corner : lists.of(v)) {
@@ -62,7 +62,7 @@ void angle_weighted(Mesh& mesh) {
 }
 
 void flat(Mesh& mesh) {
-  parallel_for(mesh.triangle_count(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.triangle_count(), normals_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Vec3f n = unit_or_up(face_normal(mesh, static_cast<std::uint32_t>(3 * t)));
       for (std::size_t k = 0; k < 3; ++k) mesh.normals[3 * t + k] = n;
