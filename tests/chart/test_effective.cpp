@@ -12,14 +12,14 @@ namespace {
 
 using namespace test;
 
-constexpr float degrees = 3.14159265F / 180.0F;
+constexpr float radians_per_degree = 3.14159265F / 180.0F;
 
 TEST(Effective, weight_falls_with_the_angle) {
   const Mesh mesh = hemisphere(64, 128);
   const StorageAtlas storage = storage_of(mesh, flat_normal_map(64, 64, CodeType::U8));
   const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 256);
-  const float low = std::cos(75 * degrees);
-  const float high = std::cos(60 * degrees);
+  const float low = std::cos(75 * radians_per_degree);
+  const float high = std::cos(60 * radians_per_degree);
   for (int y = 0; y < chart.grid.height(); ++y) {
     for (int x = 0; x < chart.grid.width(); ++x) {
       const float z = chart.base_normal(x, y).z();

@@ -98,7 +98,8 @@ TEST_F(ImageConvert, MoreBitsHoldLengthsOfOneBetter) {
   const NormalMap after = written("16.png");
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      if (x != 5 || y != 3) EXPECT_NEAR(after.vector(x, y).norm(), 1.0F, 5e-5F) << x << " " << y;
+      if (x == 5 && y == 3) continue;
+      EXPECT_NEAR(after.vector(x, y).norm(), 1.0F, 5e-5F) << x << " " << y;
     }
   }
   input_.normals = folder_ / "16.png";
