@@ -1,7 +1,6 @@
 #include "chart_fixtures.h"
 
 #include <cmath>
-#include <cstring>
 
 #include "support/meshes.h"
 
@@ -126,11 +125,6 @@ Vec3f stored_normal(const Mesh& mesh, const StorageAtlas& storage, int x, int y,
                     const SurfacePoint& point) {
   const NormalMap& map = storage.sets[0].normals;
   return frame_at(mesh, point, map.convention().space).object_normal(map.normal(x, y));
-}
-
-bool same_codes(const RawImage& a, const RawImage& b) {
-  return a.type() == b.type() && a.size_bytes() == b.size_bytes() &&
-         std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 }  // namespace normalshop::test

@@ -45,6 +45,4 @@ void for_texels(const StorageAtlas& storage,
 Vec3f stored_normal(const Mesh& mesh, const StorageAtlas& storage, int x, int y,
                     const SurfacePoint& point);
 
-bool same_codes(const RawImage& a, const RawImage& b);
-
 }  // namespace normalshop::test

@@ -3,6 +3,7 @@
 
 #include "chart_fixtures.h"
 #include "support/meshes.h"
+#include "support/same_codes.h"
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 

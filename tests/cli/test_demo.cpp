@@ -5,6 +5,7 @@
 #include "demo_recipe.h"
 #include "demo_shape.h"
 #include "noise.h"
+#include "support/same_codes.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -107,11 +108,8 @@ TEST(DemoHead, BothSidesOfSeamsReadAlike) {
 TEST(DemoHead, IsTheSameForAnyNumberOfThreads) {
   const ThreadLimit one(1);
   const DemoModel again = make_demo_model(small_model());
-  const auto same = [](const RawImage& a, const RawImage& b) {
-    return std::equal(a.data(), a.data() + a.size_bytes(), b.data(), b.data() + b.size_bytes());
-  };
-  EXPECT_TRUE(same(again.normals, model().normals));
-  EXPECT_TRUE(same(again.color, model().color));
+  EXPECT_TRUE(test::same_codes(again.normals, model().normals));
+  EXPECT_TRUE(test::same_codes(again.color, model().color));
 }
 
 TEST(DemoHead, IsReadBackAsItWasWritten) {

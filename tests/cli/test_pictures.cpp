@@ -1,10 +1,10 @@
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "../io/temp_folder.h"
 #include "cli/run_program.h"
 #include "cli/small_models.h"
+#include "support/same_codes.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/document/edit_operator.h"
@@ -16,11 +16,6 @@ namespace normalshop::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool same_codes(const RawImage& a, const RawImage& b) {
-  return a.width() == b.width() && a.channels() == b.channels() && a.type() == b.type() &&
-         a.size_bytes() == b.size_bytes() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 class Pictures : public ::testing::Test {
  protected:

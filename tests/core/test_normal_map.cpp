@@ -1,6 +1,7 @@
 #include <cstring>
 #include <limits>
 
+#include "support/same_codes.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -13,10 +14,7 @@
 namespace normalshop {
 namespace {
 
-bool same_codes(const RawImage& a, const RawImage& b) {
-  return a.width() == b.width() && a.height() == b.height() && a.channels() == b.channels() &&
-         a.type() == b.type() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
+using test::same_codes;
 
 /// Any bits whatever: normals of any length, infinities and NaN among the floats.
 RawImage random_codes(int width, int height, int channels, CodeType type) {

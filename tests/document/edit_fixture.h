@@ -80,11 +80,6 @@ inline float degrees_between(const Vec3f& a, const Vec3f& b) {
          57.29578F;
 }
 
-inline bool same_codes(const RawImage& a, const RawImage& b) {
-  return a.size_bytes() == b.size_bytes() &&
-         std::equal(a.data(), a.data() + a.size_bytes(), b.data());
-}
-
 /// Centre of the plane of a texel, from the view's centre.
 inline Vec2f plane_point(const NormalMap& map, int x, int y) {
   return {(static_cast<float>(x) + 0.5F) / static_cast<float>(map.width()) - 0.5F,

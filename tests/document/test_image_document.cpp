@@ -1,4 +1,5 @@
 #include "document/edit_fixture.h"
+#include "support/same_codes.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/slope.h"

@@ -5,6 +5,7 @@
 #include "io/temp_folder.h"
 #include "support/data.h"
 #include "support/meshes.h"
+#include "support/same_codes.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -23,12 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::data_file;
+using test::same_codes;
 using test::TempFolder;
-
-bool same_codes(const RawImage& a, const RawImage& b) {
-  return a.width() == b.width() && a.height() == b.height() && a.channels() == b.channels() &&
-         a.type() == b.type() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 Recipe recipe(const std::string& edits, const fs::path& folder = ".") {
   FileAssets assets(folder);

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "io/gltf_builder.h"
 #include "io/temp_folder.h"
 #include "support/meshes.h"
+#include "support/same_codes.h"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +21,7 @@ namespace normalshop {
 namespace {
 
 using test::mentions;
+using test::same_codes;
 using test::TempFolder;
 
 /// Two squares side by side, each its own texture set: "map" and "second".
@@ -138,11 +139,6 @@ RawImage tilted(int size) {
   return codes;
 }
 
-bool have_same_codes(const RawImage& a, const RawImage& b) {
-  return a.type() == b.type() && a.size_bytes() == b.size_bytes() &&
-         std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
-
 TEST(NormalScale, LeavesCodesAndTheModelsScale) {
   const TempFolder folder;
   const RawImage codes = tilted(8);
@@ -156,7 +152,7 @@ TEST(NormalScale, LeavesCodesAndTheModelsScale) {
     const Vec3f stored = NormalMap(codes, {}).normal(3, 2);
     const Vec3f shown = Vec3f(0.5F * stored.x(), 0.5F * stored.y(), stored.z()).normalized();
     EXPECT_LT(angle_degrees(map.normal(3, 2), shown), 0.3);
-    EXPECT_TRUE(have_same_codes(export_map(opened, 0, {}), codes));
+    EXPECT_TRUE(same_codes(export_map(opened, 0, {}), codes));
     std::vector<std::string> notes;
     const auto files = export_document(opened, folder / "out", {}, notes);
     EXPECT_EQ(scale_of(folder / "out/scaled.gltf"), 0.5F);
@@ -258,7 +254,7 @@ TEST(ExportMaps, HalfFloatsStayHalf) {
     std::vector<std::string> notes;
     ImageTraits traits;
     export_document(opened, folder / "out", {}, notes);
-    EXPECT_TRUE(have_same_codes(read_image(folder / "out/map_normal.exr", &traits), codes));
+    EXPECT_TRUE(same_codes(read_image(folder / "out/map_normal.exr", &traits), codes));
     EXPECT_EQ(traits.half_float, half);
     export_document(opened, folder / "out", {{}, CodeType::F32}, notes);
     read_image(folder / "out/map_normal.exr", &traits);
