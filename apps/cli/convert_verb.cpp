@@ -12,32 +12,32 @@ namespace {
 
 struct ConvertFlags {
   ImageFlags image;
-  std::filesystem::path output;
+  ImageExport output;
   std::string to_green;
-  ConvertOptions options;
+  bool normalize = false;
   bool json = false;
 };
 
 void run_convert(const ConvertFlags& flags) {
   const OpenImageOptions files = flags.image.open();
   const OpenedImage opened = open_image(files);
-  ConvertOptions options = flags.options;
-  options.type = code_type(flags.image.bits);
-  if (!flags.to_green.empty()) options.green_down = flags.to_green == "down";
-  const ConvertReport report = convert_image(files, opened, flags.output, options);
+  ImageExport output = flags.output;
+  output.type = code_type(flags.image.bits);
+  if (!flags.to_green.empty()) output.green_down = flags.to_green == "down";
+  const ConvertReport report = convert_image(files, opened, output, flags.normalize);
   print_notes(opened.notes);
   if (flags.json) {
     const Value::Object value{{"pixels", report.pixels},
                               {"not_unit", report.not_unit},
                               {"without_direction", report.without_direction},
-                              {"file", flags.output.string()}};
+                              {"file", output.normals.string()}};
     std::fputs(to_json(value).c_str(), stdout);
     return;
   }
   std::printf("%zu pixels, %zu normals of another length than 1%s, %zu without direction\n",
-              report.pixels, report.not_unit, options.normalize ? " (now 1)" : "",
+              report.pixels, report.not_unit, flags.normalize ? " (now 1)" : "",
               report.without_direction);
-  std::printf("wrote %s\n", flags.output.string().c_str());
+  std::printf("wrote %s\n", output.normals.string().c_str());
 }
 
 }  // namespace
@@ -48,13 +48,13 @@ void add_convert_verb(CommandLine& program) {
                            "bits or file format, or with length 1");
   ConvertFlags& flags = verb.runs(run_convert);
   verb.takes("normals", flags.image.files.normals, "Normal map").required();
-  verb.takes("-o,--output", flags.output, "File for the converted normals").required();
+  verb.takes("-o,--output", flags.output.normals, "File for the converted normals").required();
   flags.image.add_green(verb);
   verb.takes("--to-green", flags.to_green,
              "Direction of green in the written file (the input's unless given): up: OpenGL, down: "
              "DirectX")
       .one_of({"up", "down"});
-  verb.flag("--normalize", flags.options.normalize, "Gives every normal length 1");
+  verb.flag("--normalize", flags.normalize, "Gives every normal length 1");
   flags.image.add_bits(verb);
   verb.flag("--json", flags.json, "Print the result as JSON");
 }

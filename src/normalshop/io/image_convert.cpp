@@ -4,8 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "normalshop/io/image_job.h"
-
 namespace normalshop {
 
 namespace {
@@ -45,17 +43,17 @@ struct Converter {
 }  // namespace
 
 ConvertReport convert_image(const OpenImageOptions& input, const OpenedImage& opened,
-                            const std::filesystem::path& file, const ConvertOptions& options) {
-  check_not_input(file, input);
+                            const ImageExport& target, bool normalize) {
+  check_not_input(target.normals, input);
   NormalMap map = opened.document.normals();
   const CodeType type = map.codes().type();
   const float step = length_step(type, map.convention(), opened.half_float);
-  const float written = options.type ? length_step(*options.type, map.convention(), false) : step;
+  const float written = target.type ? length_step(*target.type, map.convention(), false) : step;
   Converter converter{map, step, std::min(step, written), {}};
   converter.report.pixels =
       static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height());
-  for (int y = 0; y < map.height(); ++y) converter.convert_row(y, options.normalize);
-  write_normals(map, opened.half_float, {file, {}, options.type, options.green_down});
+  for (int y = 0; y < map.height(); ++y) converter.convert_row(y, normalize);
+  write_normals(map, opened.half_float, target);
   return converter.report;
 }
 

@@ -13,9 +13,9 @@ namespace normalshop {
 /// How an edited picture is written. What is not given stays as it was imported.
 struct ImageExport {
   std::filesystem::path normals;
-  std::filesystem::path color;  ///< empty: colours are not written
-  std::optional<CodeType> type;
-  std::optional<bool> green_down;
+  std::filesystem::path color = {};  ///< empty: colours are not written
+  std::optional<CodeType> type = std::nullopt;
+  std::optional<bool> green_down = std::nullopt;
 };
 
 /// Throws InvalidInput where `target` is one of the inputs: nothing of the user's is overwritten.
