@@ -67,7 +67,7 @@ TEST(Polygon, ConcaveShapesAreCoveredOnce) {
 
 /// Corners without an ear, as no program writes them: an answer all the same, and soon.
 TEST(Polygon, CraftedPolygonsEnd) {
-  const std::size_t n = 100000;
+  const std::size_t n = 300000;
   std::vector<Vec3f> same(n, Vec3f(1, 2, 3));
   std::vector<Vec3f> turning(n);
   for (std::size_t i = 0; i < n; ++i) {

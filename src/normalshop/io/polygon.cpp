@@ -52,7 +52,7 @@ class EarClipper {
       after_.push_back(i + 1 == size_ ? 0 : i + 1);
     }
     const std::size_t tested = std::min(size_, largest_tested);
-    patience_ = 16 * size_ + 2 * tested * tested;
+    patience_ = 64 * size_ + 4 * tested * tested;
   }
 
   Triangles run() {
@@ -71,7 +71,7 @@ class EarClipper {
   }
 
  private:
-  static constexpr std::size_t largest_tested = 2048;
+  static constexpr std::size_t largest_tested = 4096;
 
   std::array<int, 3> triangle(std::size_t i) const {
     return {static_cast<int>(before_[i]), static_cast<int>(i), static_cast<int>(after_[i])};
@@ -87,10 +87,13 @@ class EarClipper {
     const Vec2d& a = points_[before_[i]];
     const Vec2d& b = points_[i];
     const Vec2d& c = points_[after_[i]];
+    const Vec2d ab = b - a;
+    const Vec2d bc = c - b;
+    const Vec2d ca = a - c;
     for (std::size_t k = after_[after_[i]]; k != before_[i]; k = after_[k], ++steps) {
       const Vec2d& p = points_[k];
       if (p == a || p == b || p == c) continue;
-      if (cross(b - a, p - a) >= 0.0 && cross(c - b, p - b) >= 0.0 && cross(a - c, p - c) >= 0.0) {
+      if (cross(ab, p - a) >= 0.0 && cross(bc, p - b) >= 0.0 && cross(ca, p - c) >= 0.0) {
         return false;
       }
     }
