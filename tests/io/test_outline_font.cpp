@@ -34,7 +34,7 @@ double area(const std::vector<Vec2f>& outline) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2d a = outline[i].cast<double>();
     const Vec2d b = outline[(i + 1) % outline.size()].cast<double>();
-    sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
+    sum += 0.5 * cross(a, b);
   }
   return sum;
 }

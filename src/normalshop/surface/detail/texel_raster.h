@@ -18,7 +18,7 @@ class TexelTriangle {
     std::sort(p.begin(), p.end(), [](const Vec2d& a, const Vec2d& b) { return a.y() < b.y(); });
     const Vec2d along = p[2] - p[0];
     const Vec2d middle = p[1] - p[0];
-    middle_right_ = along.x() * middle.y() - along.y() * middle.x() < 0.0;
+    middle_right_ = cross(along, middle) < 0.0;
     middle_y_ = p[1].y();
     rows_ = {first_centre(p[0].y()), first_centre(p[2].y())};
     whole_ = Edge(p[0], p[2]);
