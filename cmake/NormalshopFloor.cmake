@@ -33,10 +33,10 @@ function(normalshop_join target)
   endforeach()
 endfunction()
 
-# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [ALONE] [SUITES]): one GoogleTest
-# program for a folder of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers
-# without optimisation. ALONE: the sources share names and are never compiled in one go. SUITES: the program takes long to start, so ctest starts it once a suite instead
-# of once a test.
+# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [ALONE] [SUITES]): one GoogleTest program for
+# a folder of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers
+# without optimisation. ALONE: the sources share names and are never compiled in one go. SUITES: the
+# program takes long to start, so ctest starts it once a suite instead of once a test.
 function(normalshop_test name)
   cmake_parse_arguments(TEST "ALONE;SUITES" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
