@@ -1,13 +1,12 @@
 #include "cli/run_program.h"
 
-#include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <stdexcept>
-#include <thread>
 
+#include "command.h"
 #include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
@@ -76,20 +75,75 @@ bool collect(Pipe& out, Pipe& err, ProgramRun& run, std::chrono::steady_clock::t
   return true;
 }
 
+/// What is written to a standard stream while this lives.
+class Captured {
+ public:
+  explicit Captured(FILE* stream)
+      : stream_(stream), file_(std::tmpfile()), before_(::dup(::fileno(stream))) {
+    if (file_ == nullptr || before_ < 0) throw std::runtime_error("cannot capture a stream");
+    redirect(::fileno(file_));
+  }
+  Captured(const Captured&) = delete;
+  Captured& operator=(const Captured&) = delete;
+  ~Captured() {
+    redirect(before_);
+    ::close(before_);
+    std::fclose(file_);
+  }
+  std::string text() {
+    std::fflush(stream_);
+    std::string text(static_cast<std::size_t>(::lseek(::fileno(file_), 0, SEEK_END)), '\0');
+    if (::pread(::fileno(file_), text.data(), text.size(), 0) < 0) text = "unreadable";
+    return text;
+  }
+
+ private:
+  void redirect(int to) {
+    std::fflush(stream_);
+    ::dup2(to, ::fileno(stream_));
+  }
+
+  FILE* stream_;
+  FILE* file_;
+  int before_;
+};
+
+/// Arguments as main() takes them.
+class Words {
+ public:
+  explicit Words(const Arguments& arguments) : words_{NORMALSHOP_PROGRAM} {
+    words_.insert(words_.end(), arguments.begin(), arguments.end());
+    for (std::string& word : words_) argv_.push_back(word.data());
+    argv_.push_back(nullptr);
+  }
+  int argc() const { return static_cast<int>(words_.size()); }
+  char** argv() { return argv_.data(); }
+
+ private:
+  Arguments words_;
+  std::vector<char*> argv_;
+};
+
 }  // namespace
 
+ProgramRun call_program(const Arguments& arguments) {
+  Words words(arguments);
+  ProgramRun run;
+  Captured out(stdout);
+  Captured err(stderr);
+  run.exit_code = cli::run_command(words.argc(), words.argv());
+  run.out = out.text();
+  run.err = err.text();
+  return run;
+}
+
 ProgramRun run_program(const Arguments& arguments, const ProgramLimits& limits) {
-  Arguments words{NORMALSHOP_PROGRAM};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  argv.reserve(words.size() + 1);
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  Words words(arguments);
   Pipe out;
   Pipe err;
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("cannot fork");
-  if (child == 0) become_program(argv.data(), limits, out.ends[1], err.ends[1]);
+  if (child == 0) become_program(words.argv(), limits, out.ends[1], err.ends[1]);
   out.close_end(1);
   err.close_end(1);
   ProgramRun run;
@@ -104,20 +158,12 @@ ProgramRun run_program(const Arguments& arguments, const ProgramLimits& limits) 
   return run;
 }
 
-std::vector<ProgramRun> run_programs(const std::vector<Arguments>& runs,
-                                     const ProgramLimits& limits) {
-  std::vector<ProgramRun> results(runs.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs.size(); i = next++) {
-      results[i] = run_program(runs[i], limits);
-    }
-  };
-  std::vector<std::jthread> threads;
-  const std::size_t count = std::clamp(std::thread::hardware_concurrency(), 1U, 4U);
-  for (std::size_t i = 1; i < count; ++i) threads.emplace_back(work);
-  work();
-  threads.clear();
+std::vector<ProgramRun> run_all_of(const std::vector<Arguments>& runs,
+                                   const std::optional<ProgramLimits>& limits) {
+  std::vector<ProgramRun> results;
+  for (const Arguments& arguments : runs) {
+    results.push_back(limits ? run_program(arguments, *limits) : call_program(arguments));
+  }
   return results;
 }
 

@@ -8,7 +8,7 @@
 
 namespace normalshop::test {
 
-/// How a run of the built `normalshop` ended.
+/// How a run of `normalshop` ended.
 struct ProgramRun {
   int exit_code = -1;  ///< 128 + the signal when one ended it
   bool timed_out = false;
@@ -24,11 +24,13 @@ struct ProgramLimits {
 
 using Arguments = std::vector<std::string>;
 
-/// Runs `normalshop` with these arguments and waits for its end.
+/// Starts the built `normalshop` with these arguments and waits for its end.
 ProgramRun run_program(const Arguments& arguments, const ProgramLimits& limits = {});
-/// Several runs, as many at a time as there are processors.
-std::vector<ProgramRun> run_programs(const std::vector<Arguments>& runs,
-                                     const ProgramLimits& limits = {});
+/// Does the same in this process: no half second for loading the program's libraries.
+ProgramRun call_program(const Arguments& arguments);
+/// Each run after the other: called, or with limits, started.
+std::vector<ProgramRun> run_all_of(const std::vector<Arguments>& runs,
+                                   const std::optional<ProgramLimits>& limits = {});
 /// For messages of tests.
 std::string command_line(const Arguments& arguments);
 

@@ -41,10 +41,11 @@ void expect_complaint(const Case& wrong, const ProgramRun& run) {
   }
 }
 
-void expect_complaints(const std::vector<Case>& cases, const ProgramLimits& limits = {}) {
+void expect_complaints(const std::vector<Case>& cases,
+                       const std::optional<ProgramLimits>& limits = {}) {
   std::vector<Arguments> arguments;
   for (const Case& wrong : cases) arguments.push_back(wrong.arguments);
-  const std::vector<ProgramRun> runs = run_programs(arguments, limits);
+  const std::vector<ProgramRun> runs = run_all_of(arguments, limits);
   for (std::size_t i = 0; i < cases.size(); ++i) expect_complaint(cases[i], runs[i]);
 }
 
@@ -77,7 +78,8 @@ class BadInput : public ::testing::Test {
             "--recipe", path(recipe), "-o",           path(output)};
   }
   /// The complaints, and no file or folder more or less than before.
-  void expect_nothing_left(const std::vector<Case>& cases, const ProgramLimits& limits = {}) {
+  void expect_nothing_left(const std::vector<Case>& cases,
+                           const std::optional<ProgramLimits>& limits = {}) {
     const std::set<std::string> before = tree(folder_.path());
     expect_complaints(cases, limits);
     EXPECT_EQ(tree(folder_.path()), before);
@@ -308,13 +310,20 @@ TEST_F(BadInput, FilesThatCannotBeWrittenWhole) {
        {{"render", path("square.obj"), "--normal-map", path("map.png"), "--resolution", "99x99",
          "-o", path("p.png")},
         {path("p.png")}}},
-      {.file_bytes = 1000});
+      ProgramLimits{.file_bytes = 1000});
   // Room for the map and the model, none for the report.
   write_image(folder_ / "small.png", tilted_map(8, 0.0, CodeType::U8));
   expect_nothing_left(
       {{edit("square.obj", "small.png", "recipe.json", "out"), {path("out/report.json")}}},
-      {.file_bytes = 700});
+      ProgramLimits{.file_bytes = 700});
   EXPECT_EQ(read_file(folder_ / "out/skin_normal.png"), "of an earlier run");
+}
+
+TEST_F(BadInput, AnOutputThatTakesNothing) {
+  const std::string run =
+      std::string(NORMALSHOP_PROGRAM) + " describe > /dev/full 2> " + path("err");
+  EXPECT_EQ(WEXITSTATUS(std::system(run.c_str())), 1);
+  EXPECT_EQ(read_file(folder_ / "err"), "normalshop: cannot write to the standard output\n");
 }
 
 TEST_F(BadInput, FullDisk) {

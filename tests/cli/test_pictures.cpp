@@ -30,14 +30,14 @@ class Pictures : public ::testing::Test {
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   RawImage image(const std::string& name) const { return read_image(folder_ / name); }
   ProgramRun good(const Arguments& arguments) const {
-    const ProgramRun run = run_program(arguments);
+    const ProgramRun run = call_program(arguments);
     EXPECT_EQ(run.exit_code, 0) << command_line(arguments) << "\n" << run.err;
     return run;
   }
   /// The run fails with this code and one line that holds all of `names`, and writes nothing.
   void bad(const Arguments& arguments, int code, const std::vector<std::string>& names) const {
     const std::size_t before = files_in(folder_.path());
-    const ProgramRun run = run_program(arguments);
+    const ProgramRun run = call_program(arguments);
     EXPECT_EQ(run.exit_code, code) << command_line(arguments);
     EXPECT_EQ(run.out, "");
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
