@@ -37,6 +37,18 @@ bool uses_first_diagonal(std::span<const Vec3f> p, std::span<const Vec2f> uvs) {
   return (p[2] - p[0]).squaredNorm() <= (p[3] - p[1]).squaredNorm();
 }
 
+/// Plain numbers: what crafted polygons wait for, above all under sanitizers.
+struct Point {
+  double x;
+  double y;
+  bool operator==(const Point&) const = default;
+};
+
+/// Twice the area of a, b, p: above 0 where p lies left of the edge from a to b.
+double side(const Point& a, const Point& b, const Point& p) {
+  return (b.x - a.x) * (p.y - b.y) - (b.y - a.y) * (p.x - b.x);
+}
+
 /// Corners in a ring of those that are left.
 class EarClipper {
  public:
@@ -47,7 +59,7 @@ class EarClipper {
     const double sign = normal[axis] < 0.0 ? -1.0 : 1.0;
     for (std::size_t i = 0; i < size_; ++i) {
       const Vec3d p = positions[i].cast<double>();
-      points_.emplace_back(sign * p[(axis + 1) % 3], p[(axis + 2) % 3]);
+      points_.push_back({sign * p[(axis + 1) % 3], p[(axis + 2) % 3]});
       before_.push_back(i == 0 ? size_ - 1 : i - 1);
       after_.push_back(i + 1 == size_ ? 0 : i + 1);
     }
@@ -78,24 +90,19 @@ class EarClipper {
   }
 
   double turn(std::size_t i) const {
-    return cross(points_[i] - points_[before_[i]], points_[after_[i]] - points_[i]);
+    return side(points_[before_[i]], points_[i], points_[after_[i]]);
   }
 
   /// Counts what it looks at as steps.
   bool is_ear(std::size_t i, std::size_t& steps) const {
     if (!(turn(i) > 0.0)) return false;
-    const Vec2d& a = points_[before_[i]];
-    const Vec2d& b = points_[i];
-    const Vec2d& c = points_[after_[i]];
-    const Vec2d ab = b - a;
-    const Vec2d bc = c - b;
-    const Vec2d ca = a - c;
+    const Point a = points_[before_[i]];
+    const Point b = points_[i];
+    const Point c = points_[after_[i]];
     for (std::size_t k = after_[after_[i]]; k != before_[i]; k = after_[k], ++steps) {
-      const Vec2d& p = points_[k];
+      const Point p = points_[k];
       if (p == a || p == b || p == c) continue;
-      if (cross(ab, p - a) >= 0.0 && cross(bc, p - b) >= 0.0 && cross(ca, p - c) >= 0.0) {
-        return false;
-      }
+      if (side(a, b, p) >= 0.0 && side(b, c, p) >= 0.0 && side(c, a, p) >= 0.0) return false;
     }
     return true;
   }
@@ -117,7 +124,7 @@ class EarClipper {
     return best;
   }
 
-  std::vector<Vec2d> points_;
+  std::vector<Point> points_;
   std::vector<std::size_t> before_;
   std::vector<std::size_t> after_;
   std::size_t size_;
