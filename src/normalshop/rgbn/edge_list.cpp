@@ -47,12 +47,16 @@ class EdgeSorter {
   void visit_row(int y, std::uint32_t* counts, const Visit& visit) const {
     const std::uint16_t* codes = codes_.row(y);
     const std::uint32_t* nodes = nodes_.row(y);
-    const std::uint32_t* below = y + 1 < nodes_.height() ? nodes_.row(y + 1) : nodes;
-    for (int x = 0; x < nodes_.width(); ++x) {
+    const std::uint32_t* below = nodes_.row(y + 1 < nodes_.height() ? y + 1 : 0);
+    const int width = nodes_.width();
+    for (int x = 0; x < width; ++x) {
       for (std::size_t way = 0; way < 4; ++way) {
         const std::uint16_t code = *codes++;
         if (code == no_edge) continue;
-        const std::uint32_t other = (edge_dy[way] == 0 ? nodes : below)[x + edge_dx[way]];
+        int x1 = x + edge_dx[way];  // beyond a side: on the other one
+        if (x1 == width) x1 = 0;
+        if (x1 < 0) x1 = width - 1;
+        const std::uint32_t other = (edge_dy[way] == 0 ? nodes : below)[x1];
         if (other != nodes[x]) visit(counts, code, {nodes[x], other});
       }
     }

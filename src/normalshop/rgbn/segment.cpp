@@ -77,9 +77,10 @@ Segments pixel_nodes(const Image<T>& image, const IsValid& is_valid) {
   return out;
 }
 
-Image<Vec3f> smooth_normals(SlopeView slopes, MaskView weights, const SmoothOptions& options) {
+Image<Vec3f> smooth_normals(SlopeView slopes, MaskView weights, const SmoothOptions& options,
+                            Border border) {
   SlopeImage smoothed(slopes.width(), slopes.height());
-  smooth(slopes, weights, smoothed, slopes.rect(), options);
+  smooth(slopes, weights, smoothed, slopes.rect(), options, border);
   Image<Vec3f> normals(slopes.width(), slopes.height());
   for_rows(slopes.height(), [&](int y) {
     for (int x = 0; x < slopes.width(); ++x) normals(x, y) = normal_from_slope(smoothed(x, y));
@@ -87,12 +88,15 @@ Image<Vec3f> smooth_normals(SlopeView slopes, MaskView weights, const SmoothOpti
   return normals;
 }
 
-void weigh_row(const Features& features, const Image<std::uint32_t>& pixels, int y,
+void weigh_row(const Features& features, const Image<std::uint32_t>& pixels, Border border, int y,
                std::uint16_t* codes) {
+  const bool wraps = border == Border::Wrap;
   for (int x = 0; x < pixels.width(); ++x) {
     for (std::size_t way = 0; way < 4; ++way) {
-      const int x1 = x + edge_dx[way];
-      const int y1 = y + edge_dy[way];
+      int x1 = x + edge_dx[way];
+      int y1 = y + edge_dy[way];
+      if (wraps) x1 = border_pixel(x1, pixels.width(), border).index;
+      if (wraps) y1 = border_pixel(y1, pixels.height(), border).index;
       const bool exists =
           pixels.rect().contains(x1, y1) && pixels(x, y) != no_label && pixels(x1, y1) != no_label;
       *codes++ = exists ? code_of_weight(features.weight(x, y, x1, y1))
@@ -106,7 +110,7 @@ struct PixelGraph {
   EdgeCodes codes;
 };
 
-PixelGraph weigh(const RgbnView& image, const SegmentOptions& options) {
+PixelGraph weigh(const RgbnView& image, const SegmentOptions& options, Border border) {
   const int width = image.slopes.width();
   const int height = image.slopes.height();
   if (static_cast<std::int64_t>(width) * height >= (std::int64_t{1} << 29)) {
@@ -121,14 +125,15 @@ PixelGraph weigh(const RgbnView& image, const SegmentOptions& options) {
   const MaskView weights = whole ? MaskView() : validity.view();
   const SmoothOptions smoothing{.sigma = options.sigma};
   Image<Vec3f> normals;
-  if (use_slopes) normals = smooth_normals(image.slopes, weights, smoothing);
+  if (use_slopes) normals = smooth_normals(image.slopes, weights, smoothing, border);
   ColorImage color;
   if (use_color) {
     color.resize(width, height);
-    smooth(image.color, weights, color, color.rect(), smoothing);
+    smooth(image.color, weights, color, color.rect(), smoothing, border);
   }
   const Features features{normals, color, options.normal_weight, options.color_weight};
-  for_rows(height, [&](int y) { weigh_row(features, graph.pixels.labels, y, graph.codes.row(y)); });
+  for_rows(height,
+           [&](int y) { weigh_row(features, graph.pixels.labels, border, y, graph.codes.row(y)); });
   return graph;
 }
 
@@ -162,9 +167,9 @@ struct SegmentGraph::Data {
   EdgeList edges;
 };
 
-SegmentGraph::SegmentGraph(const RgbnView& image, const SegmentOptions& options) {
+SegmentGraph::SegmentGraph(const RgbnView& image, const SegmentOptions& options, Border border) {
   check(options);
-  PixelGraph graph = weigh(image, options);
+  PixelGraph graph = weigh(image, options, border);
   auto data = std::make_shared<Data>();
   data->finest = options.coarseness * finest_share;
   SegmentForest forest(graph.pixels.count, data->finest);
@@ -187,9 +192,9 @@ Segments SegmentGraph::segment(float coarseness, int min_size) const {
                      min_size);
 }
 
-Segments segment(const RgbnView& image, const SegmentOptions& options) {
+Segments segment(const RgbnView& image, const SegmentOptions& options, Border border) {
   check(options);
-  const PixelGraph graph = weigh(image, options);
+  const PixelGraph graph = weigh(image, options, border);
   return join_pixels(graph.codes, graph.pixels, options.coarseness, options.min_size);
 }
 

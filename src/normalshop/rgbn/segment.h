@@ -4,6 +4,7 @@
 #include <memory>
 #include <tuple>
 
+#include "normalshop/core/border.h"
 #include "normalshop/core/options.h"
 #include "normalshop/rgbn/rgbn_image.h"
 
@@ -53,6 +54,9 @@ struct Segments {
 /// no other. Pixels with validity 0, and those with a slope or colour that counts and is not
 /// finite, belong to no segment. Without colours, normals alone count.
 ///
+/// With Border::Wrap, pixels on opposite sides are neighbours: segments of a tile know no sides.
+/// Otherwise `border` only says what smoothing reads beyond them.
+///
 /// Smoothing blurs edges, too, and sharp ones can become narrow segments of their own. Where noise
 /// has been removed by a filter that keeps edges, sigma = 0 finds the borders as they are.
 ///
@@ -63,7 +67,8 @@ struct Segments {
 class SegmentGraph {
  public:
   /// Throws InvalidInput for options out of their range and for images of 2^29 pixels or more.
-  explicit SegmentGraph(const RgbnView& image, const SegmentOptions& options = {});
+  explicit SegmentGraph(const RgbnView& image, const SegmentOptions& options = {},
+                        Border border = Border::Clamp);
 
   /// Throws InvalidInput for values out of the range that SegmentOptions gives them.
   Segments segment(float coarseness, int min_size) const;
@@ -74,6 +79,7 @@ class SegmentGraph {
 };
 
 /// The same in one call.
-Segments segment(const RgbnView& image, const SegmentOptions& options = {});
+Segments segment(const RgbnView& image, const SegmentOptions& options = {},
+                 Border border = Border::Clamp);
 
 }  // namespace normalshop

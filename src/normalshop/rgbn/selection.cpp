@@ -49,7 +49,7 @@ class Likeness {
 };
 
 /// Sets the mask to 1 in the piece of `alike` around the seed (side by side), which is cleared.
-void flood(Image<std::uint8_t>& alike, const Vec2i& seed, MaskSpan mask) {
+void flood(Image<std::uint8_t>& alike, const Vec2i& seed, bool wraps, MaskSpan mask) {
   std::vector<Vec2i> waiting = {seed};
   while (!waiting.empty()) {
     const Vec2i at = waiting.back();
@@ -62,7 +62,10 @@ void flood(Image<std::uint8_t>& alike, const Vec2i& seed, MaskSpan mask) {
     while (x1 < alike.width() && row[x1] != 0) ++x1;
     std::fill(row + x0, row + x1, std::uint8_t{0});
     std::fill(mask.row(at.y()) + x0, mask.row(at.y()) + x1, 1.0F);
-    for (const int y : {at.y() - 1, at.y() + 1}) {
+    if (wraps && x0 == 0) waiting.emplace_back(alike.width() - 1, at.y());
+    if (wraps && x1 == alike.width()) waiting.emplace_back(0, at.y());
+    for (int y : {at.y() - 1, at.y() + 1}) {
+      if (wraps) y = border_pixel(y, alike.height(), Border::Wrap).index;
       if (y < 0 || y >= alike.height()) continue;
       const std::uint8_t* next = alike.row(y);
       for (int x = x0; x < x1; ++x) {
@@ -170,7 +173,7 @@ Rect select_labels(ImageView<std::uint32_t> labels, std::span<const std::uint32_
 }
 
 Rect select_alike(const RgbnView& image, const Vec2i& seed, MaskSpan mask,
-                  const WandOptions& options) {
+                  const WandOptions& options, Border border) {
   if (!(options.color_tolerance >= 0.0F && options.color_tolerance <= 1e6F)) {
     throw InvalidInput("select_alike: color_tolerance must be a number from 0 to 1000000");
   }
@@ -187,7 +190,7 @@ Rect select_alike(const RgbnView& image, const Vec2i& seed, MaskSpan mask,
   }
   Image<std::uint8_t> alike(mask.width(), mask.height());
   for_pixels(mask.rect(), [&](int x, int y) { alike(x, y) = is_alike(x, y) ? 1 : 0; });
-  flood(alike, seed, mask);
+  flood(alike, seed, border == Border::Wrap, mask);
   return bounds(mask);
 }
 

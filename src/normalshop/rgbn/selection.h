@@ -4,6 +4,7 @@
 #include <span>
 #include <tuple>
 
+#include "normalshop/core/border.h"
 #include "normalshop/core/options.h"
 #include "normalshop/rgbn/rgbn_image.h"
 
@@ -35,9 +36,10 @@ struct WandOptions {
 /// row) by no more than the tolerances. Without colours, normals alone count. Pixels with validity
 /// 0, or of which a number is not finite, are not selected; a seed of that kind, or outside the
 /// image, selects nothing. Writes the whole mask and returns the smallest rectangle around what it
-/// selected. Throws InvalidInput for options out of their range.
+/// selected. With Border::Wrap, pixels on opposite sides hang together. Throws InvalidInput for
+/// options out of their range.
 Rect select_alike(const RgbnView& image, const Vec2i& seed, MaskSpan mask,
-                  const WandOptions& options = {});
+                  const WandOptions& options = {}, Border border = Border::Clamp);
 
 /// Lasso: how much of each pixel lies inside the polygon, where its winding number is not 0,
 /// whatever the direction. Points in pixels, (i, j) the centre of pixel (i, j), rows down; the last

@@ -26,7 +26,8 @@ inline float weight_of_code(std::uint32_t code) {
   return code == 0 ? 0.0F : std::bit_cast<float>(least_weight_bits + (code << 12U));
 }
 
-/// Codes of four edges a pixel, in a row: to the right, down left, down, down right.
+/// Codes of four edges a pixel, in a row: to the right, down left, down, down right; beyond a side
+/// of the image the pixel on the other one.
 using EdgeCodes = Image<std::uint16_t>;
 inline constexpr std::array<int, 4> edge_dx = {1, -1, 0, 1};
 inline constexpr std::array<int, 4> edge_dy = {0, 1, 1, 1};
