@@ -11,6 +11,7 @@ The tables stand between two marker lines in the file.
 """
 
 import argparse
+import collections
 import json
 import subprocess
 import sys
@@ -58,19 +59,37 @@ def kind_of(entry):
     return "operator" if "operator" in entry else "style"
 
 
-def table(operator):
-    yield f"### {operator[kind_of(operator)]}"
+def row(field):
+    cells = (f"`{field['name']}`", accepted(field), default_of(field), field["help"])
+    return "| " + " | ".join(cell(c) for c in cells) + " |"
+
+
+def table(rows):
+    return ["| option | accepted | default | |", "| --- | --- | --- | --- |", *rows]
+
+
+def section(entry, area):
+    yield f"### {entry[kind_of(entry)]}"
     yield ""
-    yield operator["summary"] + "."
+    yield entry["summary"] + "."
     yield ""
-    if "strokes" in operator:
-        yield "Strokes: " + operator["strokes"] + "."
+    if "strokes" in entry:
+        yield "Strokes: " + entry["strokes"] + "."
         yield ""
-    yield "| option | accepted | default | |"
-    yield "| --- | --- | --- | --- |"
-    for field in operator["options"]:
-        yield "| " + " | ".join(
-            cell(c) for c in (f"`{field['name']}`", accepted(field), default_of(field), field["help"])) + " |"
+    rows = [row(field) for field in entry["options"]]
+    own = [each for each in rows if each not in area]
+    if own:
+        yield from table(own)
+    if len(own) < len(rows):
+        if own:
+            yield ""
+        yield "Then the [options of an area](#options-of-an-area)."
+
+
+def area_rows(described):
+    """The rows that most operators have in common are those of areas."""
+    count = collections.Counter(row(field) for entry in described for field in entry["options"])
+    return [each for each, times in count.items() if times > max(2, len(described) // 2)]
 
 
 def operators_of(described):
@@ -79,7 +98,10 @@ def operators_of(described):
 
 
 def tables(described):
-    blocks = ["\n".join(table(entry)) for entry in described]
+    area = area_rows(described)
+    blocks = ["\n".join(section(entry, area)) for entry in described]
+    if area:
+        blocks.append("\n".join(["### Options of an area", "", *table(area)]))
     return "\n\n".join(blocks)
 
 

@@ -11,16 +11,18 @@ here=$(cd "$(dirname "$0")" && pwd)
 pictures=$here/../../docs/images/recipes
 mkdir -p "$pictures"
 
-# picture NAME MODEL "FLAGS FOR THE MODEL" "FLAGS FOR BOTH RENDERINGS"
+# picture NAME MODEL "FLAGS FOR THE MODEL" "FLAGS FOR BOTH RENDERINGS" ["FLAGS FOR THE EDIT"]
 picture() {
   name=$1 model=$models/$2 out=$work/$1
   [ -z "$only" ] || case $only in *" $name "*) ;; *) return 0 ;; esac
   mkdir -p "$out"
   # Flags hold no spaces; they are split on purpose.
-  "$program" edit "$model" $3 --recipe "$here/$name.json" -o "$out" > "$work/$name.log" 2>&1 ||
+  "$program" edit "$model" $3 ${5:-} --recipe "$here/$name.json" -o "$out" > "$work/$name.log" 2>&1 ||
     { cat "$work/$name.log"; exit 1; }
-  "$program" render "$model" $3 $4 --resolution 1200x1200 -o "$work/$name-before.png" > "$work/$name-render.log" 2>&1
-  "$program" render "$out/$(basename "$model")" $4 --resolution 1200x1200 -o "$work/$name-after.png" >> "$work/$name-render.log" 2>&1
+  "$program" render "$model" $3 $4 --resolution 1200x1200 -o "$work/$name-before.png" > "$work/$name.log" 2>&1 ||
+    { cat "$work/$name.log"; exit 1; }
+  "$program" render "$out/$(basename "$model")" $4 --resolution 1200x1200 -o "$work/$name-after.png" >> "$work/$name.log" 2>&1 ||
+    { cat "$work/$name.log"; exit 1; }
   convert "$work/$name-before.png" "$work/$name-after.png" +append -filter Lanczos -resize 1200x600 \
     -strip -quality 88 "$pictures/$name.jpg"
   echo "$name: $(tr -d '\n' < "$out/report.json" |
@@ -43,3 +45,5 @@ picture tea_set polyhaven_tea_set_01/tea_set_01_1k.gltf "--size 4096" \
   "--view=-0.1,1,0.6 --width 0.4 --center -0.23,0.02,-0.07 --light=-0.7,0.5,0.7"
 picture spot spot/spot_quadrangulated.obj "--size 4096" \
   "--albedo $models/spot/spot_texture.png --view=-1,0.2,-0.8 --width 1.75 --center 0,0.1,0.12"
+picture patches spot/spot_quadrangulated.obj "--size 4096" \
+  "--albedo $models/spot/spot_texture.png --view=-1,0.2,-0.3 --light=-1,1,1" "--albedo $models/spot/spot_texture.png"

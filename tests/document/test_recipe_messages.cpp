@@ -133,8 +133,8 @@ TEST(RecipeMessages, OptionsOfEachOperator) {
             "r.json: edits[0].options.brush is missing; it must be a number above 0 for the area "
             "\"brush\"");
   EXPECT_EQ(other("combine", R"({"image": "cone.png"})"),
-            "r.json: edits[0].strokes must be left out for the area \"view\"; the areas \"brush\" "
-            "and \"inside\" take strokes");
+            "r.json: edits[0].strokes must be left out for the area \"view\"; all other areas "
+            "take strokes");
   EXPECT_EQ(other("transplant", R"({"sigma": 1})"),
             "r.json: edits[0].options.image is missing; it must be a text");
   EXPECT_EQ(other("transplant", R"({"image": "cone.png"})"),
@@ -212,10 +212,9 @@ TEST(RecipeMessages, Strokes) {
         R"({"operator": "smooth", "view": "front", "options": {"sigma": 1, "area": ")" + area +
         R"(", "brush": 1}, "strokes": )" + text + "}");
   };
-  EXPECT_EQ(
-      smooth("view", "[[[0, 0]]]"),
-      "r.json: edits[0].strokes must be left out for the area \"view\"; the areas \"brush\" and "
-      "\"inside\" take strokes");
+  EXPECT_EQ(smooth("view", "[[[0, 0]]]"),
+            "r.json: edits[0].strokes must be left out for the area \"view\"; all other areas "
+            "take strokes");
   EXPECT_EQ(smooth("inside", "[]"),
             "r.json: edits[0].strokes must have at least one list of points [x, y] for the area "
             "\"inside\"");

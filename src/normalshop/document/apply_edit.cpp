@@ -56,6 +56,7 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place
 struct Source {
   SlopeImage slopes;
   SlopeImage base;  ///< may be empty
+  SlopeImage seen;  ///< empty: slopes
   MaskImage validity;
   MaskImage grazing;  ///< may be empty
 };
@@ -64,9 +65,11 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
   const bool with_base = edit.operation->reads_base();
-  Source source{SlopeImage(width, height), {}, MaskImage(width, height), {}};
-  if (with_base) source.base.resize(width, height);
   const bool ignore = edit.details == DetailsRule::Ignore;
+  const bool with_seen = ignore && edit.operation->picks();
+  Source source{SlopeImage(width, height), {}, {}, MaskImage(width, height), {}};
+  if (with_base) source.base.resize(width, height);
+  if (with_seen) source.seen.resize(width, height);
   parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
       for (int x = 0; x < width; ++x) {
@@ -75,9 +78,13 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
         source.validity(x, y) = chart.weight(x, y);
         const bool valid = chart.weight(x, y) > 0.0F;
         const Vec2f below = valid ? base_gradient(base, edit.mode) : Vec2f(0.0F, 0.0F);
-        source.slopes(x, y) =
-            !valid || ignore ? below : gradient_from_normal(chart.normal(x, y), base, edit.mode);
+        Vec2f details = below;
+        if (valid && (!ignore || with_seen)) {
+          details = gradient_from_normal(chart.normal(x, y), base, edit.mode);
+        }
+        source.slopes(x, y) = ignore ? below : details;
         if (with_base) source.base(x, y) = below;
+        if (with_seen) source.seen(x, y) = details;
       }
     }
   });
@@ -94,7 +101,9 @@ EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas&
   chart.grid = grid;
   Rasterizer().rasterize(mesh, chart.grid, chart.ids);
   PullOptions pulled;
-  pulled.normals = edit.operation->reads() && edit.details == DetailsRule::Keep;
+  const EditOperator& operation = *edit.operation;
+  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep);
+  pulled.albedo = operation.reads_colors();
   pull_attributes(mesh, storage, chart, pulled);
   EffectiveOptions effective;
   effective.full_angle = edit.effective.full;
@@ -156,9 +165,13 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   OperatorInput input = make_input(edit, chart.grid, place);
   check_on_surface(edit, input.strokes, chart, input.region, place.model);
   Source source;
-  if (edit.operation->reads()) source = make_source(edit, chart);
+  if (edit.operation->reads() || edit.operation->picks()) source = make_source(edit, chart);
   chart.normal = {};
   input.source = source.slopes;
+  if (edit.operation->picks()) {
+    input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
+  }
+  input.colors = chart.albedo;
   input.base = source.base;
   input.validity = source.validity;
   OperatorResult result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
@@ -167,7 +180,8 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
     replace_grazing(source.grazing, source.slopes, chart.base_normal, edit.mode, result);
   }
   source = {};
-  chart.base_normal = {};  // push needs none
+  chart.base_normal = {};  // push needs neither
+  chart.albedo = {};
   report.times.operate = watch.lap();
 
   ChartEdit change{edit.mode, result.change, {}, result.region};

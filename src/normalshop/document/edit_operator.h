@@ -32,10 +32,12 @@ Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, St
 
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {
-  SlopeView source;   ///< before the edit (with details ignored: the base surface); extended past
-                      ///< borders; empty unless the operator reads()
-  SlopeView base;     ///< the base surface's numbers, likewise; empty unless reads_base()
-  MaskView validity;  ///< the weight of the effective chart: how far source counts; empty likewise
+  SlopeView source;  ///< before the edit (with details ignored: the base surface); extended past
+                     ///< borders; empty unless the operator reads()
+  SlopeView base;    ///< the base surface's numbers, likewise; empty unless reads_base()
+  SlopeView seen;  ///< the details before the edit, whatever becomes of them; empty unless picks()
+  MaskView validity;  ///< the weight of the effective chart: how far source counts; empty unless
+                      ///< the operator reads() or picks()
   ColorView colors;   ///< linear; empty unless the operator reads_colors() and there are any
   Border border = Border::Clamp;      ///< what source and colors do beyond their sides
   Rect region;                        ///< where the result is wanted; the rest stays as it is
@@ -52,7 +54,7 @@ enum class StrokeUse {
   Path,    ///< the line
   Loop,    ///< the line, closed
   Inside,  ///< the closed line and what lies inside it
-  Points,  ///< each point alone, with what it places there
+  Points,  ///< each point alone, with what it places or picks there
 };
 
 /// An operator with its options: the link between floors 2 and 4. It knows neither mesh nor UI.
@@ -73,8 +75,12 @@ class EditOperator {
   virtual bool reads() const = 0;
   /// Does it tell the base surface from the details on it? Only for operators that read.
   virtual bool reads_base() const { return false; }
+  /// Does it look for its place in what is there before the edit?
+  virtual bool picks() const { return false; }
   /// Does it read the colours too?
-  virtual bool reads_colors() const { return false; }
+  virtual bool reads_colors() const { return picks() || moves_colors(); }
+  /// Does it move them along with the normals?
+  virtual bool moves_colors() const { return false; }
   /// In a picture that is a tile: does it find the other side by input.border alone? Others get
   /// their strokes repeated beyond the sides.
   virtual bool repeats_itself() const { return false; }
@@ -87,8 +93,8 @@ class EditOperator {
   virtual float reach(float /*pixel*/) const { return 0.0F; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.
   virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
-  /// An operator that moves colours along with normals writes what they become, and returns where.
-  /// Only pictures ask for it.
+  /// An operator that moves_colors() writes what they become, and returns where. Only pictures ask
+  /// for it.
   virtual Rect run_colors(const OperatorInput&, ColorSpan) const { return {}; }
 };
 

@@ -276,6 +276,12 @@ EditReport ImageDocument::apply(const Edit& edit) {
     input.source = slopes;
     input.validity = weight;
   }
+  SlopeImage seen;
+  if (edit.operation->picks()) {
+    seen = pull_slopes(images_.normals, placed.window, DetailsRule::Keep, weight);
+    input.seen = seen;
+    input.validity = weight;
+  }
   SlopeImage base;  // the plane of the picture
   if (edit.operation->reads_base()) {
     base = SlopeImage(placed.grid.width(), placed.grid.height(), Vec2f(0.0F, 0.0F));
@@ -291,7 +297,8 @@ EditReport ImageDocument::apply(const Edit& edit) {
   report.times.operate = watch.lap();
   if (edit.strength > 0.0F) {
     const bool covers = edit.details == DetailsRule::Ignore;
-    if (!input.colors.empty()) apply_colors(edit, input, weight, placed.window, images_.colors);
+    if (!input.colors.empty() && edit.operation->moves_colors())
+      apply_colors(edit, input, weight, placed.window, images_.colors);
     report.pushed = push_window(result, weight, covers, placed.window, images_.normals);
   }
   report.times.push = watch.lap();

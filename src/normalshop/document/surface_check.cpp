@@ -150,7 +150,10 @@ void check_on_surface(const Edit& edit, const std::vector<Stroke>& strokes,
     const std::string field = edit.path + ".strokes[" + std::to_string(i) + "]";
     if (use == StrokeUse::Points) {
       for (std::size_t j = 0; j < strokes[i].size(); ++j) {
-        if (copy_meets(chart, *edit.operation, edit.strokes[i][j])) continue;
+        const bool meets = edit.operation->picks()
+                               ? on_surface(chart, strokes[i][j].position)
+                               : copy_meets(chart, *edit.operation, edit.strokes[i][j]);
+        if (meets) continue;
         fail_off_surface(field + "[" + std::to_string(j) + "]", model);
       }
     } else if (!path_meets(chart, strokes[i], use != StrokeUse::Path) &&

@@ -28,6 +28,7 @@ class AreaEdit : public EditOperator {
     check_brush(options_, options);
   }
   Value options() const override { return options_value(options_); }
+  bool picks() const override { return normalshop::picks(options_.area); }
   StrokeUse stroke_use() const override { return area_stroke_use(options_); }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {

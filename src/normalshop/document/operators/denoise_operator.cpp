@@ -46,7 +46,7 @@ struct DenoiseOptions {
                           "Unit normals this far apart hardly mix: 0.2 is 11 degrees; more for "
                           "stronger noise; 0 ignores normals"),
         field<Own, float>("sigma_color", &Own::sigma_color, "1", 0.0, 1e6,
-                          "Colours of a picture this far apart in linear RGB hardly mix their "
+                          "Colours this far apart in linear RGB hardly mix their "
                           "normals; 0 ignores colours"),
         field<Own, float>("guide_sigma", &Own::guide_sigma, "length", 0.0, 1e6,
                           "Gaussian that takes noise out of what is compared; 0: a sixth of sigma"),
@@ -76,7 +76,7 @@ struct DenoiseFilter {
   using Options = DenoiseOptions;
   static constexpr std::string_view name = "denoise";
   static constexpr std::string_view summary =
-      "Takes noise off normals and keeps edges, theirs and those of a picture's colours";
+      "Takes noise off normals and keeps edges, theirs and those of the colours";
   static void check(const Options&, const FieldReader&) {}
   static void limit(Options& options, float largest) {
     if (options.method == DenoiseMethod::Transform) {
@@ -123,7 +123,7 @@ struct DenoiseFilter {
 class DenoiseOperator : public FilterOperator<DenoiseFilter> {
  public:
   using FilterOperator::FilterOperator;
-  bool reads_colors() const override { return options_.sigma_color > 0.0F; }
+  bool reads_colors() const override { return options_.sigma_color > 0.0F || picks(); }
 };
 
 }  // namespace

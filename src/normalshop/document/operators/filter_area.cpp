@@ -5,6 +5,7 @@
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/for_pixels.h"
+#include "normalshop/document/operators/picked_area.h"
 #include "normalshop/rgbn/pen.h"
 
 namespace normalshop {
@@ -65,6 +66,19 @@ Stroke view_polygon(const Rect& view, const Rect& model, float feather) {
   return {{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}};
 }
 
+Rect fill_view(float feather, const OperatorInput& input, MaskSpan mask) {
+  const auto side = static_cast<float>(std::min(input.view.width(), input.view.height()));
+  const float width = std::min(feather > 0.0F ? feather : feather_share * side, 0.9F * side);
+  return fill_inside({view_polygon(input.view, input.model, width)}, width, input.region, mask);
+}
+
+/// What is picked fades towards the view's sides as the whole view does.
+Rect fill_picked(const FilterAreaOptions& options, const OperatorInput& input, MaskSpan mask) {
+  MaskImage view(mask.width(), mask.height(), 0.0F);
+  fill_view(0.0F, input, view);
+  return pick_area(options, input, view, mask);
+}
+
 }  // namespace
 
 void check_brush(const FilterAreaOptions& options, const FieldReader& reader) {
@@ -78,8 +92,7 @@ void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>&
   if (options.area == FilterArea::View) {
     if (!strokes.empty()) {
       throw InvalidInput(path +
-                         " must be left out for the area \"view\"; the areas \"brush\" and "
-                         "\"inside\" take strokes");
+                         " must be left out for the area \"view\"; all other areas take strokes");
     }
     return;
   }
@@ -96,11 +109,12 @@ void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>&
 }
 
 StrokeUse area_stroke_use(const FilterAreaOptions& options) {
+  if (options.area == FilterArea::Alike) return StrokeUse::Points;
   return options.area == FilterArea::Inside ? StrokeUse::Inside : StrokeUse::Path;
 }
 
 Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes) {
-  if (options.area == FilterArea::View) return {};
+  if (options.area == FilterArea::View || picks(options.area)) return {};
   if (options.area == FilterArea::Brush) {
     return smooth_extent_of(strokes, 0.5F * options.brush, StrokeEnds::Open);
   }
@@ -117,10 +131,8 @@ Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, Mas
         options.feather > 0.0F ? options.feather : feather_share * size_of(input.strokes);
     return fill_inside(input.strokes, feather, input.region, mask);
   }
-  const auto side = static_cast<float>(std::min(input.view.width(), input.view.height()));
-  const float feather =
-      std::min(options.feather > 0.0F ? options.feather : feather_share * side, 0.9F * side);
-  return fill_inside({view_polygon(input.view, input.model, feather)}, feather, input.region, mask);
+  if (picks(options.area)) return fill_picked(options, input, mask);
+  return fill_view(options.feather, input, mask);
 }
 
 void subtract(SlopeView source, SlopeSpan target, Rect region) {

@@ -105,7 +105,7 @@ class WarpOperator : public EditOperator {
   std::string_view name() const override { return "warp"; }
   Value options() const override { return options_value(options_); }
   bool reads() const override { return true; }
-  bool reads_colors() const override { return true; }
+  bool moves_colors() const override { return true; }
   bool repeats_itself() const override { return true; }
   StrokeUse stroke_use() const override {
     return options_.kind == WarpKind::Sketch ? StrokeUse::Inside : StrokeUse::Path;
