@@ -1,3 +1,5 @@
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -16,24 +18,37 @@ struct InfoFlags {
   bool json = false;
 };
 
-/// "name: value" lines, nested objects indented.
-void print_value(const Value& value, int depth) {
+/// On one line.
+std::string text_of(const Value& value) {
+  if (value.text() != nullptr) return *value.text();
+  if (value.number() != nullptr) {
+    std::array<char, 32> text{};
+    const bool whole = *value.number() == std::round(*value.number());
+    std::snprintf(text.data(), text.size(), whole ? "%.0f" : "%.4g", *value.number());
+    return text.data();
+  }
+  if (value.boolean() != nullptr) return *value.boolean() ? "yes" : "no";
+  std::string all;
+  if (value.array() == nullptr) return "none";
+  for (const Value& item : *value.array()) all += (all.empty() ? "" : ", ") + text_of(item);
+  return all;
+}
+
+/// "name: value"; what has several lines, indented below its name.
+void print_field(const std::string& name, const Value& field, int depth) {
   const int indent = 2 * depth;
-  for (const auto& [name, field] : *value.object()) {
-    if (field.object() != nullptr) {
-      std::printf("%*s%s:\n", indent, "", name.c_str());
-      print_value(field, depth + 1);
-    } else if (field.array() != nullptr && !field.array()->empty() &&
-               field.array()->front().object() != nullptr) {
-      for (const Value& item : *field.array()) {
-        std::printf("%*s%s:\n", indent, "", name.c_str());
-        print_value(item, depth + 1);
-      }
-    } else if (field.text() != nullptr) {
-      std::printf("%*s%s: %s\n", indent, "", name.c_str(), field.text()->c_str());
-    } else {
-      std::printf("%*s%s: %s", indent, "", name.c_str(), to_json(field).c_str());
-    }
+  const Value::Array* list = field.array();
+  const bool lines = list != nullptr && !list->empty() && list->front().number() == nullptr;
+  if (lines && list->front().object() != nullptr) {
+    for (const Value& item : *list) print_field(name, item, depth);
+    return;
+  }
+  const bool nested = lines || field.object() != nullptr;
+  std::printf("%*s%s:%s\n", indent, "", name.c_str(), nested ? "" : (" " + text_of(field)).c_str());
+  if (lines) {
+    for (const Value& line : *list) std::printf("%*s%s\n", indent + 2, "", text_of(line).c_str());
+  } else if (nested) {
+    for (const auto& [inner, value] : *field.object()) print_field(inner, value, depth + 1);
   }
 }
 
@@ -42,7 +57,7 @@ void run_info(const InfoFlags& flags) {
   if (flags.json) {
     std::fputs(to_json(info).c_str(), stdout);
   } else {
-    print_value(info, 0);
+    for (const auto& [name, field] : *info.object()) print_field(name, field, 0);
   }
 }
 
