@@ -9,7 +9,7 @@
 namespace normalshop::test {
 namespace {
 
-ImageDocument picture(NormalMap normals, Border border = Border::Clamp) {
+ImageDocument picture_of(NormalMap normals, Border border = Border::Clamp) {
   ImageDocument::Images images;
   images.normals = std::move(normals);
   images.border = border;
@@ -50,7 +50,7 @@ const std::string dot =
 
 TEST(ImageDocument, FiltersTheSlopesOfThePicture) {
   const NormalMap map = noise_map(64, CodeType::U16);
-  ImageDocument document = picture(map);
+  ImageDocument document = picture_of(map);
   document.apply(edit(R"("operator": "smooth", "view": "front", "options": {"sigma": 2.5})"));
   SlopeImage source(64, 64);
   for (int y = 0; y < 64; ++y) {
@@ -72,7 +72,7 @@ TEST(ImageDocument, FiltersTheSlopesOfThePicture) {
 TEST(ImageDocument, PointsCountFromTheMiddle) {
   for (const int width : {32, 33}) {
     for (const int height : {32, 35}) {
-      ImageDocument document = picture(flat(width, height));
+      ImageDocument document = picture_of(flat(width, height));
       const EditReport report =
           document.apply(edit(dot + R"(, "view": "front", "strokes": [[[0, 0]]])"));
       EXPECT_GT(report.pushed.changed, 40U);
@@ -90,7 +90,7 @@ TEST(ImageDocument, PointsCountFromTheMiddle) {
 
 /// y runs up: a dot above the middle changes upper rows; its upper half faces up, towards green.
 TEST(ImageDocument, YRunsUp) {
-  ImageDocument document = picture(flat(32, 32));
+  ImageDocument document = picture_of(flat(32, 32));
   document.apply(edit(dot + R"(, "view": "front", "strokes": [[[0, 8]]])"));
   EXPECT_GT(document.normals().normal(15, 5).y(), 0.1F);
   EXPECT_LT(document.normals().normal(15, 10).y(), -0.1F);
@@ -98,9 +98,9 @@ TEST(ImageDocument, YRunsUp) {
 }
 
 TEST(ImageDocument, APartOfThePictureIsAView) {
-  ImageDocument whole = picture(flat(64, 64));
-  ImageDocument part = picture(flat(64, 64));
-  ImageDocument facing = picture(flat(64, 64));
+  ImageDocument whole = picture_of(flat(64, 64));
+  ImageDocument part = picture_of(flat(64, 64));
+  ImageDocument facing = picture_of(flat(64, 64));
   whole.apply(edit(dot + R"(, "view": "front", "strokes": [[[13, -9]]])"));
   part.apply(edit(dot + R"(, "view": {"direction": [0, 0, 2], "center": [10, -10, 0], "width": 20},
                             "strokes": [[[3, 1]]])"));
@@ -112,7 +112,7 @@ TEST(ImageDocument, APartOfThePictureIsAView) {
 }
 
 TEST(ImageDocument, WhatAnEditDoesNotReachKeepsItsCode) {
-  ImageDocument document = picture(noise_map(96, CodeType::U8));
+  ImageDocument document = picture_of(noise_map(96, CodeType::U8));
   document.apply(edit(dot + R"(, "view": "front", "strokes": [[[-20, 0], [20, 11]]])"));
   const RawImage after = document.normals().encode();
   int kept = 0;
@@ -129,7 +129,7 @@ TEST(ImageDocument, WhatAnEditDoesNotReachKeepsItsCode) {
 }
 
 TEST(ImageDocument, StrengthZeroChangesNothing) {
-  ImageDocument document = picture(noise_map(32, CodeType::U8));
+  ImageDocument document = picture_of(noise_map(32, CodeType::U8));
   document.apply(
       edit(R"("operator": "smooth", "view": "front", "strength": 0, "options": {"sigma": 3})"));
   EXPECT_FALSE(document.normals().has_edits());
@@ -137,8 +137,8 @@ TEST(ImageDocument, StrengthZeroChangesNothing) {
 }
 
 TEST(ImageDocument, IgnoredDetailsAreReplacedUnderAStroke) {
-  ImageDocument noisy = picture(noise_map(64, CodeType::U16));
-  ImageDocument smooth = picture(flat(64, 64));
+  ImageDocument noisy = picture_of(noise_map(64, CodeType::U16));
+  ImageDocument smooth = picture_of(flat(64, 64));
   const Edit stroke = edit(R"("operator": "pen", "view": "front", "details": "ignore",
       "options": {"width": 24, "height": 2}, "strokes": [[[-20, 0], [20, 0]]])");
   noisy.apply(stroke);
@@ -167,7 +167,7 @@ TEST(ImageDocument, PixelsWithoutANormalStayAndHarmNobody) {
   NormalMap map = noise_map(32, CodeType::U16);
   RawImage codes = map.codes();
   for (int c = 0; c < 3; ++c) codes.row<std::uint16_t>(16)[3 * 16 + c] = 32768;
-  ImageDocument document = picture(NormalMap(codes, map.convention()));
+  ImageDocument document = picture_of(NormalMap(codes, map.convention()));
   document.apply(edit(R"("operator": "smooth", "view": "front", "options": {"sigma": 2})"));
   EXPECT_FALSE(document.normals().edited(16, 16));
   EXPECT_TRUE(document.normals().normal(17, 16).allFinite());
@@ -192,8 +192,8 @@ TEST(ImageDocument, TilesStayTiles) {
       }
       return edit(text + "]]");
     };
-    ImageDocument here = picture(map, Border::Wrap);
-    ImageDocument there = picture(rolled(map, 40, 24), Border::Wrap);
+    ImageDocument here = picture_of(map, Border::Wrap);
+    ImageDocument there = picture_of(rolled(map, 40, 24), Border::Wrap);
     here.apply(at({0, 0}));
     // The first point's place in the rolled tile.
     const auto inside = [](float v) { return v - 64.0F * std::round(v / 64.0F); };
@@ -225,8 +225,8 @@ TEST(ImageDocument, FiltersReadAcrossTheSidesOfTiles) {
            "options": {"method": "transform", "sigma": 4, "sigma_normal": 1})",
         R"("operator": "project")"}) {
     const Edit e = edit(fields + R"(, "view": "front")");
-    ImageDocument here = picture(map, Border::Wrap);
-    ImageDocument there = picture(rolled(map, 40, 24), Border::Wrap);
+    ImageDocument here = picture_of(map, Border::Wrap);
+    ImageDocument there = picture_of(rolled(map, 40, 24), Border::Wrap);
     here.apply(e);
     there.apply(e);
     double worst = 0.0;
@@ -245,14 +245,14 @@ TEST(ImageDocument, FiltersReadAcrossTheSidesOfTiles) {
 TEST(ImageDocument, FarPixelsDoNotMatter) {
   const Edit brush = edit(R"("operator": "smooth", "view": "front",
       "options": {"sigma": 2, "area": "brush", "brush": 12}, "strokes": [[[-5, 0], [5, 4]]])");
-  ImageDocument small = picture(noise_map(64, CodeType::U16));
+  ImageDocument small = picture_of(noise_map(64, CodeType::U16));
   NormalMap large_map = flat(192, 192);
   RawImage codes = large_map.codes();
   const RawImage& middle = small.normals().codes();
   for (int y = 0; y < 64; ++y) {
     std::copy_n(middle.row<std::uint16_t>(y), 64 * 3, codes.row<std::uint16_t>(64 + y) + 64 * 3);
   }
-  ImageDocument large = picture(NormalMap(std::move(codes), small.normals().convention()));
+  ImageDocument large = picture_of(NormalMap(std::move(codes), small.normals().convention()));
   small.apply(brush);
   const EditReport report = large.apply(brush);
   EXPECT_LT(report.chart_width, 64);
@@ -265,7 +265,7 @@ TEST(ImageDocument, FarPixelsDoNotMatter) {
 }
 
 TEST(ImageDocument, RefusesWhatIsNotInThePicture) {
-  ImageDocument document = picture(flat(32, 32));
+  ImageDocument document = picture_of(flat(32, 32));
   EXPECT_EQ(message_of(document, edit(dot + R"(, "view": "back", "strokes": [[[0, 0]]])")),
             "r.json: edits[0].view must look at a picture from the front: \"front\", or an object "
             "with \"facing\", or with the \"direction\" [0, 0, 1] and the \"up\" [0, 1, 0]");
@@ -295,7 +295,7 @@ TEST(ImageDocument, RefusesPicturesThatDoNotFit) {
 }
 
 TEST(ImageDocument, OnePixelIsAPicture) {
-  ImageDocument document = picture(flat(1, 1), Border::Wrap);
+  ImageDocument document = picture_of(flat(1, 1), Border::Wrap);
   document.apply(edit(R"("operator": "smooth", "view": "front", "options": {"sigma": 3})"));
   document.apply(edit(dot + R"(, "view": "front", "strokes": [[[0, 0]]])"));
   EXPECT_TRUE(document.normals().normal(0, 0).allFinite());

@@ -1,15 +1,10 @@
-#include "document/fake_assets.h"
+#include "document/edit_fixture.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/document/edit.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-Recipe parse(const std::string& json) {
-  test::FakeAssets assets;
-  return parse_recipe(json, "r.json", assets);
-}
 
 /// Every field of every operator, with values that are not the defaults.
 const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits": [
@@ -155,4 +150,4 @@ TEST(Recipe, FieldsThatDescribeCallsRequiredAreRequired) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

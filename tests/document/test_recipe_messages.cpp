@@ -7,7 +7,7 @@
 namespace normalshop {
 namespace {
 
-std::string message(const std::string& json) {
+std::string recipe_message(const std::string& json) {
   test::FakeAssets assets;
   try {
     parse_recipe(json, "r.json", assets);
@@ -18,7 +18,7 @@ std::string message(const std::string& json) {
 }
 
 std::string message_of_edit(const std::string& edit) {
-  return message(R"({"version": 1, "edits": [)" + edit + "]}");
+  return recipe_message(R"({"version": 1, "edits": [)" + edit + "]}");
 }
 
 std::string pen(const std::string& options,
@@ -36,16 +36,16 @@ std::string operator_names() {
 const std::string good_pen = R"({"width": 1, "height": 1})";
 
 TEST(RecipeMessages, TheFrame) {
-  EXPECT_EQ(message("[]"), "r.json: must be an object with fields, not a list of 0");
-  EXPECT_EQ(message(R"({"edits": []})"), "r.json: version is missing; it must be a number");
-  EXPECT_EQ(message(R"({"version": 2, "edits": []})"),
+  EXPECT_EQ(recipe_message("[]"), "r.json: must be an object with fields, not a list of 0");
+  EXPECT_EQ(recipe_message(R"({"edits": []})"), "r.json: version is missing; it must be a number");
+  EXPECT_EQ(recipe_message(R"({"version": 2, "edits": []})"),
             "r.json: version must be 1, the version that this program reads, not the number 2");
-  EXPECT_EQ(message(R"({"version": 1})"), "r.json: edits is missing; it must be a list");
-  EXPECT_EQ(message(R"({"version": 1, "edits": {}})"),
+  EXPECT_EQ(recipe_message(R"({"version": 1})"), "r.json: edits is missing; it must be a list");
+  EXPECT_EQ(recipe_message(R"({"version": 1, "edits": {}})"),
             "r.json: edits must be a list, not an object");
-  EXPECT_EQ(message(R"({"version": 1, "edits": [], "author": 1})"),
+  EXPECT_EQ(recipe_message(R"({"version": 1, "edits": [], "author": 1})"),
             "r.json: there is no field \"author\"; it may be version, edits or comment");
-  EXPECT_EQ(message(R"({"version": 1, "edits": []})"), "accepted");
+  EXPECT_EQ(recipe_message(R"({"version": 1, "edits": []})"), "accepted");
 }
 
 TEST(RecipeMessages, AnEdit) {

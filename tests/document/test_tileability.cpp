@@ -6,8 +6,8 @@
 namespace normalshop::test {
 namespace {
 
-constexpr int width = 128;
-constexpr int height = 96;
+constexpr int tile_width = 128;
+constexpr int tile_height = 96;
 constexpr int turn_x = 37;
 constexpr int turn_y = 11;  // rows down
 
@@ -23,9 +23,10 @@ SlopeImage turned(SlopeView image) {
 
 /// Random slopes that tile, some of them on a scale of several pixels.
 SlopeImage tile() {
-  SlopeImage slopes = sum_of(waves(width, height, 2, 0.2F), waves(width, height, 7, 0.1F));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  SlopeImage slopes =
+      sum_of(waves(tile_width, tile_height, 2, 0.2F), waves(tile_width, tile_height, 7, 0.1F));
+  for (int y = 0; y < tile_height; ++y) {
+    for (int x = 0; x < tile_width; ++x) {
       const auto part = [&](std::uint32_t seed) {
         const std::uint32_t bits =
             hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed);
@@ -46,7 +47,7 @@ std::string view_at(int x, int y) {
 
 class Tileability : public testing::TestWithParam<OperatorCase> {};
 
-INSTANTIATE_TEST_SUITE_P(Operators, Tileability, testing::ValuesIn(operator_cases(width)),
+INSTANTIATE_TEST_SUITE_P(Operators, Tileability, testing::ValuesIn(operator_cases(tile_width)),
                          [](const auto& tried) { return tried.param.name; });
 
 TEST_P(Tileability, AnEditOfATileKnowsNoSides) {
@@ -80,14 +81,14 @@ TEST(TileabilityOfWideFilters, HoldsAsFarAsAGaussianIsExact) {
 /// Turned round, most of the strokes cross a side: at one that is none they would end.
 TEST(TileabilityOfStrokes, SidesAreCrossed) {
   int crossed = 0;
-  for (const OperatorCase& one : operator_cases(width)) {
+  for (const OperatorCase& one : operator_cases(tile_width)) {
     if (one.strokes.empty()) continue;
     ImageDocument moved = picture(turned(tile()), Border::Wrap);
     moved.apply(edit_of(one, view_at(turn_x, turn_y)));
     bool right = false;
     bool left = false;
-    for (int y = 0; y < height; ++y) {
-      right = right || moved.normals().edited(width - 1, y);
+    for (int y = 0; y < tile_height; ++y) {
+      right = right || moved.normals().edited(tile_width - 1, y);
       left = left || moved.normals().edited(0, y);
     }
     if (right && left) ++crossed;

@@ -9,7 +9,7 @@
 namespace normalshop {
 namespace {
 
-std::string message(std::string_view json) {
+std::string value_message(std::string_view json) {
   try {
     parse_json(json, "a.json");
   } catch (const InvalidInput& e) {
@@ -33,27 +33,29 @@ TEST(ParseJson, KeepsTheOrderOfFieldsAndEveryKindOfValue) {
 }
 
 TEST(ParseJson, RepeatedNamesAreNamedWithTheirLine) {
-  EXPECT_EQ(message("{\n\"a\": 1,\n\"a\": 2}"),
+  EXPECT_EQ(value_message("{\n\"a\": 1,\n\"a\": 2}"),
             "a.json: line 3: the field \"a\" appears twice in one object");
-  EXPECT_EQ(message(R"([{"a": 1}, {"a": 2}])"), "accepted");
+  EXPECT_EQ(value_message(R"([{"a": 1}, {"a": 2}])"), "accepted");
 }
 
 TEST(ParseJson, NestsAHundredLevelsAndNoDeeper) {
-  EXPECT_EQ(message(std::string(100, '[') + std::string(100, ']')), "accepted");
-  EXPECT_EQ(message("\n" + std::string(101, '[') + std::string(101, ']')),
+  EXPECT_EQ(value_message(std::string(100, '[') + std::string(100, ']')), "accepted");
+  EXPECT_EQ(value_message("\n" + std::string(101, '[') + std::string(101, ']')),
             "a.json: line 2: nested more than 100 levels deep");
-  EXPECT_EQ(message(std::string(1000000, '[')), "a.json: line 1: nested more than 100 levels deep");
+  EXPECT_EQ(value_message(std::string(1000000, '[')),
+            "a.json: line 1: nested more than 100 levels deep");
 }
 
 TEST(ParseJson, TokensThatAreNoJsonAreNamedWithTheirLine) {
-  EXPECT_EQ(message("[\nNaN]"),
+  EXPECT_EQ(value_message("[\nNaN]"),
             "a.json: line 2: not valid JSON: invalid literal; last read: '[<U+000A>N'");
-  EXPECT_EQ(message("[Infinity]"),
+  EXPECT_EQ(value_message("[Infinity]"),
             "a.json: line 1: not valid JSON: invalid literal; last read: '[I'");
-  EXPECT_EQ(message("[1e999]"), "a.json: line 1: not valid JSON: number overflow parsing '1e999'");
+  EXPECT_EQ(value_message("[1e999]"),
+            "a.json: line 1: not valid JSON: number overflow parsing '1e999'");
   for (const std::string_view bad : {"", "{", "[1,]", "{} {}", "// x\n1", "{'a': 1}", "[+1]",
                                      "[.5]", "\"\xff\"", "\"\xc3(\"", "{\"a\": 1,}", "tru"}) {
-    const std::string text = message(bad);
+    const std::string text = value_message(bad);
     EXPECT_TRUE(text.starts_with("a.json: line ")) << bad << " -> " << text;
     EXPECT_NE(text.find("not valid JSON: "), std::string::npos) << text;
     for (const char c : text) EXPECT_TRUE(c >= ' ' && c <= '~') << text;
@@ -61,7 +63,7 @@ TEST(ParseJson, TokensThatAreNoJsonAreNamedWithTheirLine) {
 }
 
 TEST(ParseJson, AVeryLongFaultMakesAShortMessage) {
-  EXPECT_LT(message("[\"" + std::string(1000000, 'x')).size(), 300U);
+  EXPECT_LT(value_message("[\"" + std::string(1000000, 'x')).size(), 300U);
 }
 
 TEST(ParseJson, AnObjectOfManyFieldsTakesNoSquareOfThem) {

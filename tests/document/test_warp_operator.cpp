@@ -6,18 +6,18 @@
 namespace normalshop::test {
 namespace {
 
-constexpr int size = 96;
+constexpr int picture_side = 96;
 
 /// A flat picture with one round bump of radius 6 at `place` (from the middle, y up): red, where
 /// the rest is grey.
 ImageDocument bump_at(const Vec2f& place, Border border = Border::Clamp) {
   ImageDocument::Images images;
-  RawImage codes(size, size, 3, CodeType::F32);
-  images.colors = ColorImage(size, size);
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const Vec2f p(static_cast<float>(x) - 0.5F * (size - 1),
-                    0.5F * (size - 1) - static_cast<float>(y));
+  RawImage codes(picture_side, picture_side, 3, CodeType::F32);
+  images.colors = ColorImage(picture_side, picture_side);
+  for (int y = 0; y < picture_side; ++y) {
+    for (int x = 0; x < picture_side; ++x) {
+      const Vec2f p(static_cast<float>(x) - 0.5F * (picture_side - 1),
+                    0.5F * (picture_side - 1) - static_cast<float>(y));
       const Vec2f d = (p - place) / 6.0F;
       const float fall = std::max(0.0F, 1.0F - d.squaredNorm());
       const Vec3f n = normal_from_slope(-1.5F * fall * d);
@@ -34,11 +34,11 @@ ImageDocument bump_at(const Vec2f& place, Border border = Border::Clamp) {
 Vec2f red_place(const ImageDocument& document) {
   Vec2f sum(0.0F, 0.0F);
   float weight = 0.0F;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
+  for (int y = 0; y < picture_side; ++y) {
+    for (int x = 0; x < picture_side; ++x) {
       const float red = document.colors()(x, y).x() - 0.3F;
-      sum += red * Vec2f(static_cast<float>(x) - 0.5F * (size - 1),
-                         0.5F * (size - 1) - static_cast<float>(y));
+      sum += red * Vec2f(static_cast<float>(x) - 0.5F * (picture_side - 1),
+                         0.5F * (picture_side - 1) - static_cast<float>(y));
       weight += red;
     }
   }
@@ -50,11 +50,11 @@ Vec2f bump_place(const ImageDocument& document) {
   const PictureSlopes picture = slopes_of(document);
   Vec2f sum(0.0F, 0.0F);
   float weight = 0.0F;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
+  for (int y = 0; y < picture_side; ++y) {
+    for (int x = 0; x < picture_side; ++x) {
       const float steep = picture.slopes(x, y).norm();
-      sum += steep * Vec2f(static_cast<float>(x) - 0.5F * (size - 1),
-                           0.5F * (size - 1) - static_cast<float>(y));
+      sum += steep * Vec2f(static_cast<float>(x) - 0.5F * (picture_side - 1),
+                           0.5F * (picture_side - 1) - static_cast<float>(y));
       weight += steep;
     }
   }
@@ -86,10 +86,10 @@ TEST(WarpOperator, BeyondTheBrushNothingChanges) {
       edit(R"("operator": "warp", "view": "front", "options": {"kind": "twirl", "radius": 12},
                          "strokes": [[[-8, 8]]])"));
   EXPECT_TRUE(document.normals().has_edits());
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const Vec2f p(static_cast<float>(x) - 0.5F * (size - 1),
-                    0.5F * (size - 1) - static_cast<float>(y));
+  for (int y = 0; y < picture_side; ++y) {
+    for (int x = 0; x < picture_side; ++x) {
+      const Vec2f p(static_cast<float>(x) - 0.5F * (picture_side - 1),
+                    0.5F * (picture_side - 1) - static_cast<float>(y));
       if ((p - Vec2f(-8.0F, 8.0F)).norm() < 15.0F) continue;  // a cell of the lattice more
       EXPECT_FALSE(document.normals().edited(x, y)) << x << " " << y;
       EXPECT_EQ(document.colors()(x, y), before(x, y));
@@ -113,9 +113,9 @@ TEST(WarpOperator, ATileIsWarpedAcrossItsSides) {
       edit(R"("operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 30},
                          "strokes": [[[42, 0], [54, 0]]])"));
   // 54 is -42 of the next copy.
-  const int row = size / 2;
+  const int row = picture_side / 2;
   EXPECT_GT(document.colors()(5, row).x(), 0.7F);
-  EXPECT_LT(document.colors()(size - 6, row).x(), 0.5F);
+  EXPECT_LT(document.colors()(picture_side - 6, row).x(), 0.5F);
 }
 
 TEST(WarpOperator, MovesTheDetailsOfAMesh) {
