@@ -26,7 +26,7 @@ inline double degrees_between(const Vec3d& a, const Vec3d& b) {
 }
 
 /// Slopes of the normal that is tilted so far towards an azimuth.
-inline Vec2f tilted(double tilt, double azimuth) {
+inline Vec2f tilted_slope(double tilt, double azimuth) {
   const double slope = -std::tan(tilt * degree);
   return Vec2d(slope * std::cos(azimuth * degree), slope * std::sin(azimuth * degree))
       .cast<float>();
@@ -37,6 +37,10 @@ inline Vec2f combined(const Vec2f& base, const Vec2f& details, CombineModel mode
   const SlopeImage image(1, 1, details);
   combine(target, image, {}, target, target.rect(), {.model = model});
   return target(0, 0);
+}
+
+inline Vec2f rnm(const Vec2f& base, const Vec2f& details) {
+  return combined(base, details, CombineModel::Reoriented);
 }
 
 /// Random slopes, most of them gentle and some nearly at the horizon.

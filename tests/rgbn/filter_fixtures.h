@@ -1,35 +1,25 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <complex>
-#include <cstring>
 #include <functional>
 #include <vector>
 
+#include "support/slope_fields.h"
+
 #include "normalshop/core/border.h"
 #include "normalshop/core/image.h"
-#include "normalshop/core/random.h"
 
 /// Images for tests of linear filters.
-namespace normalshop {
+namespace normalshop::test {
 
-inline float filter_noise(int x, int y, std::uint32_t seed) {
-  const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed);
-  return static_cast<float>(bits >> 8U) * 0x1p-23F - 1.0F;
-}
-
-inline SlopeImage noise_slopes(int width, int height) {
-  SlopeImage image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) image(x, y) = {filter_noise(x, y, 1), filter_noise(x, y, 2)};
-  }
-  return image;
-}
+inline constexpr std::array borders = {Border::Clamp, Border::Mirror, Border::Wrap};
 
 inline MaskImage noise_mask(int width, int height) {
   MaskImage image(width, height);
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) image(x, y) = std::max(0.0F, filter_noise(x, y, 3));
+    for (int x = 0; x < width; ++x) image(x, y) = std::max(0.0F, noise(x, y, 3));
   }
   return image;
 }
@@ -44,22 +34,6 @@ Image<T> rolled(const Image<T>& image, int dx, int dy) {
     }
   }
   return result;
-}
-
-template <class T>
-bool same_bits(const Image<T>& a, const Image<T>& b) {
-  return a.rect() == b.rect() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-inline float largest_difference(const SlopeImage& a, const SlopeImage& b) {
-  float worst = 0.0F;
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      const float apart = (a(x, y) - b(x, y)).norm();
-      if (!(apart <= worst)) worst = apart;
-    }
-  }
-  return worst;
 }
 
 /// `copies` images on each side of the image, which what lies beyond its border goes on into.
@@ -188,4 +162,4 @@ inline double bend_response(double sigma, double k) {
   return response / moment;
 }
 
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "style_fixtures.h"
+#include "support/nan.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/parallel.h"
@@ -11,7 +12,7 @@
 #include "normalshop/rgbn/rgbn_normals.h"
 
 /// What every style promises besides its looks. draw(normals, target, region) runs it.
-namespace normalshop {
+namespace normalshop::test {
 
 template <class T, class Draw>
 void expect_regions_and_threads_to_agree(const T& background, const Draw& draw) {
@@ -44,7 +45,7 @@ void expect_edges_to_hold(const T& background, const Draw& draw) {
   holes(20, 20) = Vec3f::Zero();
   Image<T> with_zero(40, 40, background);
   draw(holes, with_zero, holes.rect());
-  holes(20, 20) = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  holes(20, 20) = Vec3f::Constant(nan);
   Image<T> with_nan(40, 40, background);
   draw(holes, with_nan, holes.rect());
   EXPECT_TRUE(same_in(with_zero, with_nan, holes.rect()));
@@ -55,7 +56,6 @@ inline bool is_finite(const Vec3f& value) { return value.allFinite(); }
 
 /// Every kind of vector without a direction, and some that face away, among those of lively().
 inline Image<Vec3f> damaged(int width, int height) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
   Image<Vec3f> normals = lively(width, height);
   for (int y = 0; y < height; ++y) {
@@ -77,9 +77,8 @@ inline Image<Vec3f> damaged(int width, int height) {
 template <class T, class Draw>
 void expect_gaps_to_be_defined(const T& background, const std::optional<T>& in_gaps,
                                const Draw& draw) {
-  for (const Image<Vec3f>& normals :
-       {damaged(120, 90), Image<Vec3f>(70, 50, Vec3f::Zero()),
-        Image<Vec3f>(70, 50, Vec3f::Constant(std::numeric_limits<float>::quiet_NaN()))}) {
+  for (const Image<Vec3f>& normals : {damaged(120, 90), Image<Vec3f>(70, 50, Vec3f::Zero()),
+                                      Image<Vec3f>(70, 50, Vec3f::Constant(nan))}) {
     Image<T> out(normals.width(), normals.height(), background);
     draw(normals, out, out.rect());
     for (int y = 0; y < out.height(); ++y) {
@@ -127,4 +126,4 @@ void expect_a_style(const T& background, const std::optional<T>& in_gaps, const 
   expect_masked_pixels_not_to_count(background, draw);
 }
 
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "normalshop/core/color_map.h"
 #include "normalshop/core/image.h"
 #include "normalshop/core/slope.h"
 
 /// Pictures of analytic surfaces for the tests of curvature and styles. Points (x, y) are pixels
 /// from the middle, y up.
-namespace normalshop {
+namespace normalshop::test {
 
 template <class NormalAt>
 Image<Vec3f> picture_of(int width, int height, const NormalAt& normal_at) {
@@ -47,6 +48,9 @@ inline Image<Vec3f> lively(int width, int height) {
   });
 }
 
+/// How light a grey looks.
+inline float tone(const Vec3f& color) { return linear_to_srgb(color.y()); }
+
 inline bool same(float a, float b) { return a == b; }
 inline bool same(const Vec3f& a, const Vec3f& b) { return a == b; }
 
@@ -72,4 +76,4 @@ bool untouched_outside(const Image<T>& a, const Rect& region, const T& value) {
   return true;
 }
 
-}  // namespace normalshop
+}  // namespace normalshop::test

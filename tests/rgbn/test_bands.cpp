@@ -9,10 +9,8 @@
 #include "normalshop/rgbn/bands.h"
 #include "normalshop/rgbn/smooth.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 SlopeImage low_pass(const SlopeImage& image, float sigma, Border border) {
   SlopeImage out(image.width(), image.height());
@@ -28,7 +26,7 @@ SlopeImage equalized(const SlopeImage& image, std::vector<float> gains,
 }
 
 TEST(Split, BaseAndDetailsAreTheSource) {
-  const SlopeImage image = noise_slopes(120, 90);
+  const SlopeImage image = noise_image(120, 90);
   for (const float sigma : {0.5F, 3.0F, 20.0F}) {
     SlopeImage base(120, 90);
     SlopeImage details(120, 90);
@@ -47,7 +45,7 @@ TEST(Split, BaseAndDetailsAreTheSource) {
 }
 
 TEST(Split, SigmaZeroHasNoDetails) {
-  const SlopeImage image = noise_slopes(20, 10);
+  const SlopeImage image = noise_image(20, 10);
   SlopeImage base(20, 10);
   SlopeImage details(20, 10);
   split(image, {}, base, details, image.rect(), {.sigma = 0.0F});
@@ -76,7 +74,7 @@ TEST(Split, RejectsBadSigma) {
 }
 
 TEST(Split, ARegionGivesThePixelsOfTheWhole) {
-  const SlopeImage image = noise_slopes(80, 60);
+  const SlopeImage image = noise_image(80, 60);
   SlopeImage base(80, 60);
   SlopeImage details(80, 60);
   const SplitOptions options{.sigma = 3.0F, .border = Border::Wrap};
@@ -92,7 +90,7 @@ TEST(Split, ARegionGivesThePixelsOfTheWhole) {
 }
 
 TEST(Bands, NeutralValuesLeaveTheSource) {
-  SlopeImage image = noise_slopes(50, 40);
+  SlopeImage image = noise_image(50, 40);
   image(5, 5) = {-0.0F, 0.0F};
   const SlopeImage base = low_pass(image, 3.0F, Border::Clamp);
   SlopeImage other(50, 40, Vec2f::Constant(nan));
@@ -110,7 +108,7 @@ TEST(Bands, NeutralValuesLeaveTheSource) {
 }
 
 TEST(Bands, GainZeroTakesTheBandAway) {
-  const SlopeImage image = noise_slopes(50, 40);
+  const SlopeImage image = noise_image(50, 40);
   const SlopeImage base = low_pass(image, 3.0F, Border::Clamp);
   SlopeImage out(50, 40);
   scale_band(image, {image, base}, {}, 0.0F, out, image.rect());
@@ -156,7 +154,7 @@ TEST(Bands, RejectBadNumbers) {
 }
 
 TEST(Equalize, GainsOfOneLeaveTheInput) {
-  SlopeImage image = noise_slopes(60, 50);
+  SlopeImage image = noise_image(60, 50);
   image(5, 5) = {-0.0F, 0.0F};
   for (const std::size_t count : {0U, 1U, 5U, 16U}) {
     const SlopeImage out = equalized(image, std::vector<float>(count, 1.0F));
@@ -191,13 +189,13 @@ TEST(Equalize, HasTheResponseOfItsFormula) {
 }
 
 TEST(Equalize, ScalesByEqualGains) {
-  const SlopeImage image = noise_slopes(40, 30);
+  const SlopeImage image = noise_image(40, 30);
   const SlopeImage out = equalized(image, {2.0F, 2.0F, 2.0F}, {.base_gain = 2.0F});
   for (int x = 0; x < 40; ++x) EXPECT_EQ(out(x, 7), Vec2f(2.0F * image(x, 7)));
 }
 
 TEST(Equalize, TilesAndTakesRegionsAndThreads) {
-  const SlopeImage image = noise_slopes(61, 47);
+  const SlopeImage image = noise_image(61, 47);
   const MaskImage valid = noise_mask(61, 47);
   const std::vector<float> gains = {2.0F, 0.5F, 1.0F};  // up to sigma 4: direct filters
   const EqualizeOptions options{.border = Border::Wrap};
@@ -236,4 +234,4 @@ TEST(Equalize, RejectsWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

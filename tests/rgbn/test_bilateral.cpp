@@ -10,15 +10,8 @@
 #include "normalshop/rgbn/bilateral.h"
 #include "normalshop/rgbn/smooth.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using test::mean_error;
-using test::random_colors;
-using test::relief;
-using test::with_noise;
-
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
 /// Colours that follow the normals, so that both have the same edges.
 ColorImage colors_of(const SlopeImage& slopes) {
@@ -32,7 +25,7 @@ ColorImage colors_of(const SlopeImage& slopes) {
   return colors;
 }
 
-SlopeImage filtered(const SlopeImage& slopes, const BilateralOptions& options) {
+SlopeImage bilateral_filtered(const SlopeImage& slopes, const BilateralOptions& options) {
   SlopeImage out(slopes.width(), slopes.height());
   bilateral({slopes, {}, {}}, {out, {}}, out.rect(), options);
   return out;
@@ -113,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Options, BilateralCase,
 // it was frozen.
 TEST(Relief, TheGaussianLeaves265) {
   const auto left = [](float sigma) {
-    return test::error_left(5.0F, [&](const SlopeImage& noisy, SlopeImage& out) {
+    return error_left(5.0F, [&](const SlopeImage& noisy, SlopeImage& out) {
       smooth(noisy, {}, out, out.rect(), {.sigma = sigma});
     });
   };
@@ -124,8 +117,8 @@ TEST(Relief, TheGaussianLeaves265) {
 }
 
 TEST(Bilateral, TakesNoiseOffAndLeavesEdges) {
-  const double error = test::error_left(
-      5.0F, [](const SlopeImage& noisy, SlopeImage& out) { out = filtered(noisy, {}); });
+  const double error = error_left(
+      5.0F, [](const SlopeImage& noisy, SlopeImage& out) { out = bilateral_filtered(noisy, {}); });
   RecordProperty("degrees", std::to_string(error));
   EXPECT_LE(error, 1.25);
 }
@@ -146,8 +139,8 @@ TEST(Bilateral, KeepsConstantsToTheLastBit) {
 }
 
 TEST(Bilateral, SigmaZeroLeavesTheInput) {
-  SlopeImage slopes = noise_slopes(33, 17);
-  slopes(3, 4).x() = nan_value;
+  SlopeImage slopes = noise_image(33, 17);
+  slopes(3, 4).x() = nan;
   for (const float sigma : {0.0F, 0.5F}) {
     SlopeImage out(33, 17);
     EXPECT_EQ(bilateral({slopes, {}, {}}, {out, {}}, {-5, 0, 100, 100}, {.sigma_space = sigma}),
@@ -201,8 +194,8 @@ TEST(Bilateral, PixelsThatDoNotCount) {
   SlopeImage slopes(size, size, Vec2f(0.25F, -0.5F));
   MaskImage valid(size, size, 1.0F);
   for (int y = 0; y < size; ++y) {
-    slopes(20, y) = {nan_value, 1.0F};  // not finite
-    slopes(40, y) = {3.0F, 3.0F};       // invalid
+    slopes(20, y) = {nan, 1.0F};   // not finite
+    slopes(40, y) = {3.0F, 3.0F};  // invalid
     valid(40, y) = 0.0F;
   }
   for (const float guide_sigma : {0.0F, 1.0F}) {
@@ -220,39 +213,39 @@ TEST(Bilateral, AGrazingPixelCountsAsSlope20) {
   SlopeImage slopes(9, 9, Vec2f::Zero());
   slopes(4, 4) = {50.0F, 0.0F};
   const SlopeImage out =
-      filtered(slopes, {.sigma_space = 1.0F, .sigma_normal = 0.0F, .guide_sigma = 0.0F});
+      bilateral_filtered(slopes, {.sigma_space = 1.0F, .sigma_normal = 0.0F, .guide_sigma = 0.0F});
   const double space = std::exp(-0.5);
   EXPECT_NEAR(out(4, 4).x(), 20.0 / (1.0 + 4.0 * space), 1e-4);
   EXPECT_NEAR(out(5, 4).x(), 20.0 * space / (1.0 + 4.0 * space), 1e-4);
 }
 
 TEST(Bilateral, WhatTilesKeepsTiling) {
-  const SlopeImage slopes = noise_slopes(50, 37);
+  const SlopeImage slopes = noise_image(50, 37);
   const BilateralOptions options{.sigma_space = 8.0F, .sigma_normal = 0.5F, .border = Border::Wrap};
-  const SlopeImage out = filtered(slopes, options);
-  EXPECT_TRUE(same_bits(rolled(out, 23, 11), filtered(rolled(slopes, 23, 11), options)));
+  const SlopeImage out = bilateral_filtered(slopes, options);
+  EXPECT_TRUE(same_bits(rolled(out, 23, 11), bilateral_filtered(rolled(slopes, 23, 11), options)));
   // Clamped, it would not.
-  EXPECT_FALSE(
-      same_bits(rolled(out, 23, 11),
-                filtered(rolled(slopes, 23, 11), {.sigma_space = 8.0F, .sigma_normal = 0.5F})));
+  EXPECT_FALSE(same_bits(
+      rolled(out, 23, 11),
+      bilateral_filtered(rolled(slopes, 23, 11), {.sigma_space = 8.0F, .sigma_normal = 0.5F})));
 }
 
 TEST(Bilateral, AMirroredBorderIsAMirrorImage) {
-  const SlopeImage slopes = noise_slopes(41, 30);
+  const SlopeImage slopes = noise_image(41, 30);
   const SlopeImage wide = surrounded(slopes, 1, Border::Mirror);
   const BilateralOptions options{.sigma_normal = 0.5F, .border = Border::Mirror};
-  const SlopeImage mirrored = filtered(slopes, options);
-  const SlopeImage expected = filtered(wide, options);
+  const SlopeImage mirrored = bilateral_filtered(slopes, options);
+  const SlopeImage expected = bilateral_filtered(wide, options);
   for (int y = 0; y < 30; ++y) {
     for (int x = 0; x < 41; ++x) EXPECT_EQ(mirrored(x, y), expected(41 + x, 30 + y));
   }
 }
 
 TEST(Bilateral, ARegionGivesThePixelsOfTheWhole) {
-  const SlopeImage slopes = noise_slopes(300, 160);
+  const SlopeImage slopes = noise_image(300, 160);
   const Rect region = {111, 37, 170, 143};
   const BilateralOptions options{.sigma_normal = 0.5F};
-  const SlopeImage whole = filtered(slopes, options);
+  const SlopeImage whole = bilateral_filtered(slopes, options);
   SlopeImage part(300, 160, Vec2f::Constant(9.0F));
   EXPECT_EQ(bilateral({slopes, {}, {}}, {part, {}}, region, options), region);
   for (int y = 0; y < 160; ++y) {
@@ -264,7 +257,7 @@ TEST(Bilateral, ARegionGivesThePixelsOfTheWhole) {
 }
 
 TEST(Bilateral, TheNumberOfThreadsChangesNothing) {
-  const SlopeImage slopes = noise_slopes(301, 203);
+  const SlopeImage slopes = noise_image(301, 203);
   const ColorImage colors = random_colors(301, 203);
   const BilateralOptions options{.sigma_color = 0.5F, .sigma_normal = 0.5F};
   SlopeImage many(301, 203);
@@ -279,7 +272,7 @@ TEST(Bilateral, TheNumberOfThreadsChangesNothing) {
 }
 
 TEST(Bilateral, ExtremeOptionsGiveNumbers) {
-  const SlopeImage slopes = noise_slopes(20, 20);
+  const SlopeImage slopes = noise_image(20, 20);
   const ColorImage colors = random_colors(20, 20);
   SlopeImage out(20, 20);
   for (const float sigma : {1e-30F, 1e6F}) {
@@ -299,10 +292,10 @@ TEST(Bilateral, RejectsOptionsOutsideTheirRanges) {
   };
   EXPECT_THROW(run({.sigma_space = -1.0F}), InvalidInput);
   EXPECT_THROW(run({.sigma_space = 101.0F}), InvalidInput);
-  EXPECT_THROW(run({.sigma_space = nan_value}), InvalidInput);
-  EXPECT_THROW(run({.sigma_color = nan_value}), InvalidInput);
+  EXPECT_THROW(run({.sigma_space = nan}), InvalidInput);
+  EXPECT_THROW(run({.sigma_color = nan}), InvalidInput);
   EXPECT_THROW(run({.sigma_normal = std::numeric_limits<float>::infinity()}), InvalidInput);
-  EXPECT_THROW(run({.guide_sigma = nan_value}), InvalidInput);
+  EXPECT_THROW(run({.guide_sigma = nan}), InvalidInput);
 }
 
 TEST(Bilateral, TinyImages) {
@@ -317,4 +310,4 @@ TEST(Bilateral, TinyImages) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

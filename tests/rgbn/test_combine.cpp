@@ -9,14 +9,8 @@
 #include "normalshop/rgbn/combine.h"
 #include "normalshop/rgbn/curl.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using namespace test;
-
-Vec2f rnm(const Vec2f& base, const Vec2f& details) {
-  return combined(base, details, CombineModel::Reoriented);
-}
 
 TEST(Combine, AddsDetailsByStrengthAndMask) {
   const SlopeImage base(7, 5, Vec2f(0.5F, -1.0F));
@@ -98,7 +92,7 @@ TEST(CombineModels, OnAFlatBaseTheDetailsAreWhatComesOut) {
   for (const CombineModel model : {CombineModel::Linear, CombineModel::Rotation,
                                    CombineModel::Reoriented, CombineModel::Whiteout}) {
     for (const double tilt : {0.01, 1.0, 30.0, 80.0}) {
-      const Vec2f details = tilted(tilt, 200.0);
+      const Vec2f details = tilted_slope(tilt, 200.0);
       const Vec2f out = combined(Vec2f::Zero(), details, model);
       EXPECT_LT(degrees_between(normal(out), normal(details)), 1e-5) << name_of(model) << tilt;
     }
@@ -124,9 +118,9 @@ TEST(CombineModels, TheMaskScalesTheDetails) {
 }
 
 TEST(CombineModels, TheOrderMattersToAllButLinear) {
-  const Vec2f a = tilted(35.0, 10.0);
-  const Vec2f b = tilted(30.0, 130.0);
-  const Vec2f c = tilted(25.0, 250.0);
+  const Vec2f a = tilted_slope(35.0, 10.0);
+  const Vec2f b = tilted_slope(30.0, 130.0);
+  const Vec2f c = tilted_slope(25.0, 250.0);
   const auto linear = [](const Vec2f& t, const Vec2f& u) {
     return combined(t, u, CombineModel::Linear);
   };
@@ -138,10 +132,10 @@ TEST(CombineModels, TheOrderMattersToAllButLinear) {
 
 /// Mean angle over all azimuths between a tilted base and 10 degrees of detail on it.
 double kept_tilt(double base_tilt, CombineModel model) {
-  const Vec2f base = tilted(base_tilt, 20.0);
+  const Vec2f base = tilted_slope(base_tilt, 20.0);
   double sum = 0.0;
   for (int k = 0; k < 360; ++k) {
-    sum += degrees_between(normal(combined(base, tilted(10.0, k), model)), normal(base));
+    sum += degrees_between(normal(combined(base, tilted_slope(10.0, k), model)), normal(base));
   }
   return sum / 360.0;
 }
@@ -162,15 +156,16 @@ TEST(CombineModels, KeepTheTiltOfDetailsOnATiltedBase) {
 
 TEST(CombineModels, OverlayIsThatOfColours) {
   const auto code = [](double n) { return 0.5 * n + 0.5; };
-  const Vec3d t = normal(tilted(50.0, 30.0));
-  const Vec3d u = normal(tilted(35.0, 140.0));
+  const Vec3d t = normal(tilted_slope(50.0, 30.0));
+  const Vec3d u = normal(tilted_slope(35.0, 140.0));
   Vec3d expected;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double b = code(t[k]);
     const double d = code(u[k]);
     expected[k] = 2.0 * (b < 0.5 ? 2.0 * b * d : 1.0 - 2.0 * (1.0 - b) * (1.0 - d)) - 1.0;
   }
-  const Vec2f out = combined(tilted(50.0, 30.0), tilted(35.0, 140.0), CombineModel::Overlay);
+  const Vec2f out =
+      combined(tilted_slope(50.0, 30.0), tilted_slope(35.0, 140.0), CombineModel::Overlay);
   EXPECT_LT(degrees_between(normal(out), expected.normalized()), 1e-4);
 }
 
@@ -246,4 +241,4 @@ TEST(CombineModels, RejectAStrengthThatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

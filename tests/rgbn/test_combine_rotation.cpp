@@ -6,14 +6,8 @@
 
 #include "normalshop/core/slope.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using namespace test;
-
-Vec2f rnm(const Vec2f& base, const Vec2f& details) {
-  return combined(base, details, CombineModel::Reoriented);
-}
 
 TEST(CombineReoriented, IsTheShortestRotationFromTheViewToTheBase) {
   const SlopeImage base = random_slopes(60, 60, 1);
@@ -36,7 +30,7 @@ TEST(CombineReoriented, IsTheShortestRotationFromTheViewToTheBase) {
 
 TEST(CombineReoriented, HasNeutralSides) {
   for (const double tilt : {0.5, 20.0, 60.0, 88.0}) {
-    const Vec2f t = tilted(tilt, 77.0);
+    const Vec2f t = tilted_slope(tilt, 77.0);
     EXPECT_EQ(rnm(t, Vec2f::Zero()), t);
     EXPECT_LT(degrees_between(normal(rnm(Vec2f::Zero(), t)), normal(t)), 1e-5);
   }
@@ -59,7 +53,7 @@ TEST(CombineReoriented, IsTheRotationOfTheBaseByItself) {
 
 TEST(CombineReoriented, StopsAtTheHorizonHoweverFarItWouldGo) {
   for (const double tilt : {10.0, 30.0, 88.0}) {
-    const Vec3d n = normal(rnm(tilted(85.0, 30.0), tilted(tilt, 30.0)));
+    const Vec3d n = normal(rnm(tilted_slope(85.0, 30.0), tilted_slope(tilt, 30.0)));
     EXPECT_NEAR(n.z(), static_cast<double>(min_cosine), 1e-6);
     EXPECT_NEAR(std::atan2(n.y(), n.x()) / degree, 30.0, 1e-4);
   }
@@ -113,17 +107,18 @@ TEST(CombineRotation, IsTheExplicitRotation) {
 }
 
 TEST(CombineRotation, StopsAtTheHorizonOnTheGreatArc) {
-  const Vec2f base = tilted(75.0, 0.0);
+  const Vec2f base = tilted_slope(75.0, 0.0);
   double before = -1.0;
   for (const double tilt : {5.0, 13.0, 13.9, 20.0, 50.0, 85.0}) {
     // Straight on over the horizon, and aslant.
-    const Vec3d straight = normal(combined(base, tilted(tilt, 0.0), CombineModel::Rotation));
+    const Vec3d straight = normal(combined(base, tilted_slope(tilt, 0.0), CombineModel::Rotation));
     EXPECT_NEAR(std::acos(straight.z()) / degree, std::min(75.0 + tilt, 88.854), 1e-3);
     EXPECT_NEAR(straight.y(), 0.0, 1e-7);
-    const Vec3d aslant = normal(combined(base, tilted(tilt, 40.0), CombineModel::Rotation));
+    const Vec3d aslant = normal(combined(base, tilted_slope(tilt, 40.0), CombineModel::Rotation));
     EXPECT_GE(aslant.z(), 0.02 - 1e-8);
     // On the great arc: perpendicular to its axis.
-    const Vec3d goal = rotated_by_hand(normal(tilted(tilt, 40.0)), Vec3d::UnitZ(), normal(base));
+    const Vec3d goal =
+        rotated_by_hand(normal(tilted_slope(tilt, 40.0)), Vec3d::UnitZ(), normal(base));
     EXPECT_NEAR(aslant.dot(normal(base).cross(goal).normalized()), 0.0, 3e-7);
     const double turned = degrees_between(aslant, normal(base));
     EXPECT_GE(turned, before);
@@ -133,16 +128,16 @@ TEST(CombineRotation, StopsAtTheHorizonOnTheGreatArc) {
 
 TEST(CombineRotation, KeepsTheFineFrequenciesOfTheBase) {
   // A ripple on tilted surface, turned by a constant direction, keeps its angles.
-  const Vec2f n = tilted(40.0, 30.0);
+  const Vec2f n = tilted_slope(40.0, 30.0);
   const std::vector<Vec3d> ripple{
-      rotated_by_hand(normal(tilted(8.0, 0.0)), Vec3d::UnitZ(), normal(n)),
-      rotated_by_hand(normal(tilted(8.0, 180.0)), Vec3d::UnitZ(), normal(n))};
+      rotated_by_hand(normal(tilted_slope(8.0, 0.0)), Vec3d::UnitZ(), normal(n)),
+      rotated_by_hand(normal(tilted_slope(8.0, 180.0)), Vec3d::UnitZ(), normal(n))};
   std::vector<Vec3d> out;
   for (const Vec3d& a : ripple) {
     const SlopeImage base(1, 1, Vec2d(-a.x() / a.z(), -a.y() / a.z()).cast<float>());
     SlopeImage target(1, 1);
-    combine_rotation(base, SlopeImage(1, 1, n), SlopeImage(1, 1, tilted(20.0, 100.0)), {}, 1.0F,
-                     target, target.rect());
+    combine_rotation(base, SlopeImage(1, 1, n), SlopeImage(1, 1, tilted_slope(20.0, 100.0)), {},
+                     1.0F, target, target.rect());
     out.push_back(normal(target(0, 0)));
   }
   EXPECT_NEAR(degrees_between(out[0], out[1]), 16.0, 1e-4);
@@ -150,4 +145,4 @@ TEST(CombineRotation, KeepsTheFineFrequenciesOfTheBase) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

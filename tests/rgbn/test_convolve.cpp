@@ -8,15 +8,13 @@
 #include "normalshop/core/parallel.h"
 #include "normalshop/rgbn/convolve.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-constexpr std::array borders = {Border::Clamp, Border::Mirror, Border::Wrap};
 
 Image<float> noise_kernel(int width, int height, std::uint32_t seed) {
   Image<float> kernel(width, height);
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) kernel(x, y) = filter_noise(x, y, seed);
+    for (int x = 0; x < width; ++x) kernel(x, y) = noise(x, y, seed);
   }
   return kernel;
 }
@@ -26,7 +24,7 @@ Image<float> product_kernel(int width, int height) {
   Image<float> kernel(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      kernel(x, y) = filter_noise(x, 0, 7) * filter_noise(0, y, 8);
+      kernel(x, y) = noise(x, 0, 7) * noise(0, y, 8);
     }
   }
   return kernel;
@@ -75,7 +73,7 @@ SlopeImage plain(const SlopeImage& image, const Image<float>& kernel, Border bor
 }
 
 TEST(Convolve, HasTheFormulaOfItsHeader) {
-  const SlopeImage image = noise_slopes(43, 38);
+  const SlopeImage image = noise_image(43, 38);
   const MaskImage valid = noise_mask(43, 38);
   for (const Border border : borders) {
     for (const auto& kernel :
@@ -109,7 +107,7 @@ TEST(Convolve, APixelBecomesTheKernel) {
 }
 
 TEST(Convolve, TheMiddleWeightAloneLeavesTheInput) {
-  const SlopeImage image = noise_slopes(30, 21);
+  const SlopeImage image = noise_image(30, 21);
   const Image<float> one(1, 1, 1.0F);
   Image<float> middle(5, 3, 0.0F);
   middle(2, 1) = 1.0F;
@@ -177,7 +175,7 @@ TEST(Convolve, InvalidPixelsDoNotCount) {
 }
 
 TEST(Convolve, WhatTilesKeepsTiling) {
-  const SlopeImage image = noise_slopes(61, 47);
+  const SlopeImage image = noise_image(61, 47);
   const MaskImage valid = noise_mask(61, 47);
   const MaskImage moved_valid = rolled(valid, 17, 29);
   for (const auto& kernel : {noise_kernel(7, 5, 5), product_kernel(65, 3)}) {
@@ -190,7 +188,7 @@ TEST(Convolve, WhatTilesKeepsTiling) {
 }
 
 TEST(Convolve, ARegionGivesTheBitsOfTheWholeForAnyNumberOfThreads) {
-  const SlopeImage image = noise_slopes(700, 150);
+  const SlopeImage image = noise_image(700, 150);
   const MaskImage valid = noise_mask(700, 150);
   for (const auto& kernel : {noise_kernel(7, 5, 5), product_kernel(21, 9)}) {
     const int side = reach(kernel);
@@ -250,4 +248,4 @@ TEST(Convolve, TinyImages) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

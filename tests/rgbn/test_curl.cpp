@@ -10,10 +10,8 @@
 #include "normalshop/rgbn/heatmap.h"
 #include "normalshop/rgbn/pen.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using namespace test;
 
 /// (-y, x) with y up and the origin at pixel (0, 0): curl 2.
 SlopeImage rotation(int width, int height) {
@@ -211,4 +209,4 @@ TEST(LevelChange, BadInput) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -3,6 +3,7 @@
 
 #include "style_checks.h"
 #include "style_fixtures.h"
+#include "support/nan.h"
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 #include "normalshop/rgbn/curvature.h"
 #include "normalshop/rgbn/rgbn_normals.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 Image<Curvature> curvature_of(const Image<Vec3f>& normals, const CurvatureOptions& options = {}) {
@@ -165,7 +166,6 @@ TEST(Curvature, HasUnitDirectionsWhateverTheNormals) {
 TEST(Curvature, RejectsOptionsOutOfRange) {
   const Image<Vec3f> normals(4, 4, Vec3f(0.0F, 0.0F, 1.0F));
   MaskImage out(4, 4);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(mean_curvature(normals, out, out.rect(), {.sigma = nan}), InvalidInput);
   EXPECT_THROW(mean_curvature(normals, out, out.rect(), {.sigma = -1.0F}), InvalidInput);
   try {
@@ -189,4 +189,4 @@ TEST(RgbnNormals, AreZeroWhereNothingIsValid) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

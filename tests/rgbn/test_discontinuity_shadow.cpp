@@ -7,7 +7,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/discontinuity_shadow.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 /// A ball of radius 30 in front of a wall that faces the viewer.
@@ -105,4 +105,4 @@ TEST(DiscontinuityShadow, RejectsOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -10,14 +10,10 @@
 #include "normalshop/core/parallel.h"
 #include "normalshop/rgbn/domain_transform.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-using test::random_colors;
-
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
-
-SlopeImage filtered(const SlopeImage& slopes, const DomainTransformOptions& options) {
+SlopeImage transform_filtered(const SlopeImage& slopes, const DomainTransformOptions& options) {
   SlopeImage out(slopes.width(), slopes.height());
   domain_transform({slopes, {}, {}}, {out, {}}, out.rect(), options);
   return out;
@@ -26,8 +22,8 @@ SlopeImage filtered(const SlopeImage& slopes, const DomainTransformOptions& opti
 // 1.2 was the aim.
 TEST(DomainTransform, TakesNoiseOffAndLeavesEdges) {
   const auto left = [](int rolls) {
-    return test::error_left(5.0F, [&](const SlopeImage& noisy, SlopeImage& out) {
-      out = filtered(noisy, {.rolls = rolls});
+    return error_left(5.0F, [&](const SlopeImage& noisy, SlopeImage& out) {
+      out = transform_filtered(noisy, {.rolls = rolls});
     });
   };
   const double error = left(1);
@@ -46,7 +42,7 @@ TEST_P(DomainTransformSigma, IsTheStandardDeviation) {
   SlopeImage dot(size, size, Vec2f::Zero());
   dot(half, half).x() = 1.0F;
   const SlopeImage out =
-      filtered(dot, {.sigma_space = sigma, .sigma_normal = 0.0F, .guide_sigma = 0.0F});
+      transform_filtered(dot, {.sigma_space = sigma, .sigma_normal = 0.0F, .guide_sigma = 0.0F});
   double sum = 0.0;
   double across = 0.0;
   double down = 0.0;
@@ -101,8 +97,8 @@ TEST(DomainTransform, KeepsConstantsToTheLastBit) {
 }
 
 TEST(DomainTransform, SigmaZeroLeavesTheInput) {
-  SlopeImage slopes = noise_slopes(33, 17);
-  slopes(3, 4).x() = nan_value;
+  SlopeImage slopes = noise_image(33, 17);
+  slopes(3, 4).x() = nan;
   SlopeImage out(33, 17);
   EXPECT_EQ(domain_transform({slopes, {}, {}}, {out, {}}, {-5, 0, 100, 100}, {.sigma_space = 0.0F}),
             slopes.rect());
@@ -114,7 +110,7 @@ TEST(DomainTransform, NothingPassesThroughPixelsThatDoNotCount) {
   MaskImage valid(40, 40, 0.5F);
   for (int y = 0; y < 40; ++y) {
     for (int x = 20; x < 40; ++x) slopes(x, y) = {1.0F, 1.0F};
-    slopes(20, y) = {nan_value, 1.0F};
+    slopes(20, y) = {nan, 1.0F};
     valid(19, y) = 0.0F;
     slopes(19, y) = {7.0F, 7.0F};
   }
@@ -148,20 +144,21 @@ TEST(DomainTransform, PixelsWeighByTheirValidity) {
 }
 
 TEST(DomainTransform, WhatTilesKeepsTiling) {
-  const SlopeImage slopes = noise_slopes(50, 37);
+  const SlopeImage slopes = noise_image(50, 37);
   const DomainTransformOptions options{.sigma_normal = 3.0F, .border = Border::Wrap};
-  EXPECT_LT(largest_difference(rolled(filtered(slopes, options), 23, 11),
-                               filtered(rolled(slopes, 23, 11), options)),
+  EXPECT_LT(largest_difference(rolled(transform_filtered(slopes, options), 23, 11),
+                               transform_filtered(rolled(slopes, 23, 11), options)),
             2e-4F);
-  EXPECT_GT(largest_difference(filtered(slopes, options), filtered(slopes, {.sigma_normal = 3.0F})),
+  EXPECT_GT(largest_difference(transform_filtered(slopes, options),
+                               transform_filtered(slopes, {.sigma_normal = 3.0F})),
             1e-2F);
 }
 
 TEST(DomainTransform, AMirroredBorderIsAMirrorImage) {
-  const SlopeImage slopes = noise_slopes(41, 30);
+  const SlopeImage slopes = noise_image(41, 30);
   const DomainTransformOptions options{.sigma_normal = 3.0F, .border = Border::Mirror};
-  const SlopeImage mirrored = filtered(slopes, options);
-  const SlopeImage expected = filtered(surrounded(slopes, 1, Border::Mirror), options);
+  const SlopeImage mirrored = transform_filtered(slopes, options);
+  const SlopeImage expected = transform_filtered(surrounded(slopes, 1, Border::Mirror), options);
   for (int y = 0; y < 30; ++y) {
     for (int x = 0; x < 41; ++x)
       EXPECT_LT((mirrored(x, y) - expected(41 + x, 30 + y)).norm(), 2e-4F);
@@ -169,11 +166,11 @@ TEST(DomainTransform, AMirroredBorderIsAMirrorImage) {
 }
 
 TEST(DomainTransform, ARegionGivesThePixelsOfTheWhole) {
-  const SlopeImage slopes = noise_slopes(300, 260);
+  const SlopeImage slopes = noise_image(300, 260);
   const Rect region = {111, 97, 170, 143};
   for (const float sigma_normal : {0.0F, 3.0F}) {
     const DomainTransformOptions options{.sigma_normal = sigma_normal};
-    const SlopeImage whole = filtered(slopes, options);
+    const SlopeImage whole = transform_filtered(slopes, options);
     SlopeImage part(300, 260, Vec2f::Constant(9.0F));
     EXPECT_EQ(domain_transform({slopes, {}, {}}, {part, {}}, region, options), region);
     for (int y = 0; y < 260; ++y) {
@@ -191,10 +188,10 @@ TEST(DomainTransform, ARegionGivesThePixelsOfTheWhole) {
 }
 
 TEST(DomainTransform, TheNumberOfThreadsChangesNothing) {
-  const SlopeImage slopes = noise_slopes(301, 203);
+  const SlopeImage slopes = noise_image(301, 203);
   for (const float guide_sigma : {0.0F, 1.0F}) {
     const DomainTransformOptions options{.guide_sigma = guide_sigma};
-    const SlopeImage many = filtered(slopes, options);
+    const SlopeImage many = transform_filtered(slopes, options);
     SlopeImage one = slopes;
     const ThreadLimit limit(1);
     domain_transform({one, {}, {}}, {one, {}}, one.rect(), options);  // in place, too
@@ -204,14 +201,14 @@ TEST(DomainTransform, TheNumberOfThreadsChangesNothing) {
 
 TEST(DomainTransform, RejectsOptionsOutsideTheirRanges) {
   const SlopeImage slopes(4, 4, Vec2f::Zero());
-  EXPECT_THROW(filtered(slopes, {.sigma_space = nan_value}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.sigma_color = -1.0F}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.sigma_normal = nan_value}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.guide_sigma = std::numeric_limits<float>::infinity()}),
+  EXPECT_THROW(transform_filtered(slopes, {.sigma_space = nan}), InvalidInput);
+  EXPECT_THROW(transform_filtered(slopes, {.sigma_color = -1.0F}), InvalidInput);
+  EXPECT_THROW(transform_filtered(slopes, {.sigma_normal = nan}), InvalidInput);
+  EXPECT_THROW(transform_filtered(slopes, {.guide_sigma = std::numeric_limits<float>::infinity()}),
                InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.iterations = 0}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.rolls = -1}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.rolls = 11}), InvalidInput);
+  EXPECT_THROW(transform_filtered(slopes, {.iterations = 0}), InvalidInput);
+  EXPECT_THROW(transform_filtered(slopes, {.rolls = -1}), InvalidInput);
+  EXPECT_THROW(transform_filtered(slopes, {.rolls = 11}), InvalidInput);
 }
 
 TEST(DomainTransform, TinyImagesAndExtremeSigmas) {
@@ -220,9 +217,9 @@ TEST(DomainTransform, TinyImagesAndExtremeSigmas) {
       const DomainTransformOptions options{
           .sigma_space = sigma, .sigma_normal = 0.0F, .border = border};
       SlopeImage one(1, 1, Vec2f(0.0F, 0.0F));
-      EXPECT_EQ(filtered(one, options)(0, 0), Vec2f(0.0F, 0.0F));
-      const SlopeImage slopes = noise_slopes(7, 5);
-      const SlopeImage out = filtered(slopes, options);
+      EXPECT_EQ(transform_filtered(one, options)(0, 0), Vec2f(0.0F, 0.0F));
+      const SlopeImage slopes = noise_image(7, 5);
+      const SlopeImage out = transform_filtered(slopes, options);
       EXPECT_TRUE(out(3, 3).allFinite());
       if (sigma < 1.0F) {
         EXPECT_LT(largest_difference(slopes, out), 1e-6F);
@@ -234,4 +231,4 @@ TEST(DomainTransform, TinyImagesAndExtremeSigmas) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -5,7 +5,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/emboss.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 /// A square letter with a square hole, wound the other way round.
@@ -78,4 +78,4 @@ TEST(Emboss, LimitsAndBadInput) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

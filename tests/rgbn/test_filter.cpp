@@ -11,7 +11,7 @@
 #include "normalshop/rgbn/sharpen.h"
 #include "normalshop/rgbn/smooth.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 constexpr std::array kinds = {FilterKind::Gaussian, FilterKind::HighPass,
@@ -130,7 +130,7 @@ TEST_P(FilterSigma, FiltersTheHeightOfABump) {
 /// Slopes of random heights at the corners of pixels that repeat: all frequencies, no curl.
 SlopeImage rough_surface(int size) {
   const auto height = [&](int x, int y) {
-    return static_cast<double>(filter_noise(x % size, y % size, 9));
+    return static_cast<double>(noise(x % size, y % size, 9));
   };
   SlopeImage image(size, size);
   for (int y = 0; y < size; ++y) {
@@ -176,7 +176,7 @@ TEST(Filter, AmountsOfTheLaplacianMeanTheSameAtEveryScale) {
 }
 
 TEST(Filter, IsSmoothAndSharpenWhereThoseSuffice) {
-  const SlopeImage image = noise_slopes(90, 70);
+  const SlopeImage image = noise_image(90, 70);
   SlopeImage expected(90, 70);
   smooth(image, {}, expected, image.rect(), {.sigma = 3.0F}, Border::Mirror);
   EXPECT_TRUE(same_bits(filtered(image, {.sigma = 3.0F, .border = Border::Mirror}), expected));
@@ -188,7 +188,7 @@ TEST(Filter, IsSmoothAndSharpenWhereThoseSuffice) {
 }
 
 TEST(Filter, NeutralOptionsLeaveTheInput) {
-  SlopeImage image = noise_slopes(50, 40);
+  SlopeImage image = noise_image(50, 40);
   image(3, 4) = {-0.0F, 0.0F};
   const auto keeps = [&](const FilterOptions& options) {
     const SlopeImage out = filtered(image, options);
@@ -211,12 +211,12 @@ TEST(Filter, ExtractingFiltersTakeTheShapeAway) {
       EXPECT_TRUE(same_bits(filtered(ramp, options_of(kind, sigma)), flat)) << name_of(kind);
     }
     const FilterOptions none{.kind = kind};
-    EXPECT_TRUE(same_bits(filtered(noise_slopes(120, 80), none), flat)) << name_of(kind);
+    EXPECT_TRUE(same_bits(filtered(noise_image(120, 80), none), flat)) << name_of(kind);
   }
 }
 
 TEST(Filter, WhatTilesKeepsTiling) {
-  const SlopeImage image = noise_slopes(61, 47);
+  const SlopeImage image = noise_image(61, 47);
   const MaskImage valid = noise_mask(61, 47);
   for (const FilterKind kind : kinds) {
     for (const float sigma : {1.6F, 4.0F, 12.0F}) {
@@ -236,7 +236,7 @@ TEST(Filter, WhatTilesKeepsTiling) {
 }
 
 TEST(Filter, ARegionGivesThePixelsOfTheWholeAndReadsOnlyItsReach) {
-  const SlopeImage image = noise_slopes(170, 150);
+  const SlopeImage image = noise_image(170, 150);
   for (const Border border : {Border::Clamp, Border::Mirror, Border::Wrap}) {
     for (const FilterKind kind : kinds) {
       for (const float sigma : {1.7F, 4.0F, 6.0F}) {
@@ -292,7 +292,7 @@ TEST(Filter, InvalidPixelsDoNotCountAndKeepTheirSlopes) {
 }
 
 TEST(Filter, TheNumberOfThreadsChangesNothingNorDoesWorkingInPlace) {
-  const SlopeImage image = noise_slopes(201, 133);
+  const SlopeImage image = noise_image(201, 133);
   for (const FilterKind kind : kinds) {
     for (const float sigma : {2.0F, 3.0F, 11.0F}) {
       const FilterOptions options = options_of(kind, sigma);
@@ -306,7 +306,7 @@ TEST(Filter, TheNumberOfThreadsChangesNothingNorDoesWorkingInPlace) {
 }
 
 TEST(Filter, HardlyAnySigmaDoesHardlyAnything) {
-  const SlopeImage image = noise_slopes(30, 20);
+  const SlopeImage image = noise_image(30, 20);
   const SlopeImage flat(30, 20, Vec2f::Zero());
   for (const float sigma : {1e-30F, 1e-3F}) {
     EXPECT_LT(largest_difference(filtered(image, {.sigma = sigma}), image), 1e-5F);
@@ -331,7 +331,6 @@ TEST(Filter, TinyImages) {
 
 TEST(Filter, RejectsWhatIsOutOfRange) {
   SlopeImage image(4, 4, Vec2f::Zero());
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   for (const FilterOptions& bad :
        {FilterOptions{.sigma = nan}, FilterOptions{.sigma = -1.0F},
         FilterOptions{.noise_sigma = nan}, FilterOptions{.amount = nan},
@@ -344,4 +343,4 @@ TEST(Filter, RejectsWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -1,6 +1,7 @@
 #include <cmath>
-#include <limits>
+#include <numbers>
 
+#include "support/slope_fields.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -9,10 +10,10 @@
 #include "normalshop/core/sample.h"
 #include "normalshop/rgbn/mask.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+using std::numbers::pi;
 
 MaskImage blobs(int width, int height) {
   MaskImage mask(width, height);
@@ -26,17 +27,7 @@ MaskImage blobs(int width, int height) {
   return mask;
 }
 
-bool same(const MaskImage& a, const MaskImage& b) {
-  return a.rect() == b.rect() && std::equal(a.data(), a.data() + a.size(), b.data());
-}
-
-double area(const MaskImage& mask) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < mask.size(); ++i) sum += static_cast<double>(mask.data()[i]);
-  return sum;
-}
-
-MaskImage disc(int size, double radius) {
+MaskImage disc_of_radius(int size, double radius) {
   MaskImage mask(size, size);
   const double centre = 0.5 * (size - 1);
   for (int y = 0; y < size; ++y) {
@@ -75,7 +66,7 @@ TEST(Mask, AnEmptyMaskIsOneEverywhere) {
 }
 
 TEST(Mask, InvertingTwiceGivesTheMask) {
-  const MaskImage mask = disc(20, 7.0);
+  const MaskImage mask = disc_of_radius(20, 7.0);
   MaskImage out(20, 20);
   invert_mask(mask, out, out.rect());
   EXPECT_EQ(area(out) + area(mask), 400.0);
@@ -101,7 +92,7 @@ TEST(Mask, FeatherFallsOffWithTheDistanceFromAStraightBorder) {
 }
 
 TEST(Mask, FeatherOfADiscIsRound) {
-  const MaskImage mask = disc(121, 40.0);
+  const MaskImage mask = disc_of_radius(121, 40.0);
   MaskImage out(121, 121);
   feather_mask(mask, out, out.rect(), {.width = 20.0F});
   for (int y = 0; y < 121; ++y) {
@@ -113,7 +104,7 @@ TEST(Mask, FeatherOfADiscIsRound) {
 }
 
 TEST(Mask, FeatherOfTheInverseIsTheInverse) {
-  const MaskImage mask = disc(60, 17.3);
+  const MaskImage mask = disc_of_radius(60, 17.3);
   MaskImage inverse(60, 60);
   invert_mask(mask, inverse, mask.rect());
   MaskImage a(60, 60);
@@ -124,8 +115,7 @@ TEST(Mask, FeatherOfTheInverseIsTheInverse) {
 }
 
 TEST(Mask, GrowMovesTheBorder) {
-  const double pi = 3.14159265358979;
-  const MaskImage mask = disc(161, 40.0);
+  const MaskImage mask = disc_of_radius(161, 40.0);
   for (const float distance : {-25.0F, -3.5F, -1.0F, 1.0F, 4.3F, 30.0F}) {
     MaskImage out(161, 161);
     grow_mask(mask, out, out.rect(), {.distance = distance});
@@ -212,4 +202,4 @@ TEST(Mask, ARegionAndOneThreadGiveThePixelsOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

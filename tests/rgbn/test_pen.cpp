@@ -1,6 +1,6 @@
 #include <cmath>
-#include <limits>
 
+#include "support/nan.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -8,7 +8,7 @@
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/pen.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 struct Drawing {
@@ -240,7 +240,6 @@ TEST(Pen, RejectsBadInput) {
   PenOptions closed = options_of(ProfileShape::Step, 4.0F, 1.0F);
   closed.closed = true;
   EXPECT_THROW(draw(line, closed), InvalidInput);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(draw({{{nan, 0.0F}}}, options_of(ProfileShape::Bump, 4.0F, 1.0F)), InvalidInput);
   EXPECT_THROW(draw(line, options_of(ProfileShape::Bump, nan, 1.0F)), InvalidInput);
 }
@@ -266,4 +265,4 @@ TEST(SmoothStroke, PassesThroughThePointsWithoutGaps) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

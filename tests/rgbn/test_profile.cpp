@@ -5,7 +5,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/profile.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 const Curve uneven(std::vector<Vec2f>{{-1.0F, 0.5F}, {-0.2F, 1.0F}, {0.4F, -0.3F}, {1.0F, 2.0F}});
@@ -58,4 +58,4 @@ TEST(Profile, RejectsWhatWouldBreakTheSurface) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -10,10 +10,8 @@
 #include "normalshop/rgbn/curl.h"
 #include "normalshop/rgbn/project.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using namespace test;
 
 /// MATLAB's peaks with its slopes, x and y from -3 to 3; y up.
 struct Peaks {
@@ -365,4 +363,4 @@ TEST(Project, CancellingWritesNothing) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

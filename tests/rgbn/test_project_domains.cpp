@@ -8,10 +8,8 @@
 #include "normalshop/rgbn/curl.h"
 #include "normalshop/rgbn/project.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using namespace test;
 
 TEST(Project, WhatTilesKeepsTiling) {
   for (const int size : {96, 75}) {  // odd sizes take another way
@@ -208,4 +206,4 @@ TEST(Project, ARegionIsSolvedAlone) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

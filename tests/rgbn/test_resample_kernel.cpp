@@ -7,7 +7,7 @@
 #include "normalshop/core/random.h"
 #include "normalshop/rgbn/resample_kernel.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 Image<float> random_kernel(int width, int height) {
@@ -128,4 +128,4 @@ TEST(ResampleKernel, RefusesWhatIsNoKernelAndNoLength) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

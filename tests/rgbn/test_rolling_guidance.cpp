@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 
 #include "rgbn/filter_fixtures.h"
 #include "support/relief.h"
@@ -10,14 +9,10 @@
 #include "normalshop/rgbn/bilateral.h"
 #include "normalshop/rgbn/rolling_guidance.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-using test::random_colors;
-
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
-
-SlopeImage filtered(const SlopeImage& slopes, const RollingGuidanceOptions& options) {
+SlopeImage rolling_filtered(const SlopeImage& slopes, const RollingGuidanceOptions& options) {
   SlopeImage out(slopes.width(), slopes.height());
   rolling_guidance({slopes, {}, {}}, {out, {}}, out.rect(), options);
   return out;
@@ -25,8 +20,8 @@ SlopeImage filtered(const SlopeImage& slopes, const RollingGuidanceOptions& opti
 
 // 1.1 was the aim.
 TEST(RollingGuidance, TakesNoiseOffAndLeavesEdges) {
-  const double error = test::error_left(
-      5.0F, [](const SlopeImage& noisy, SlopeImage& out) { out = filtered(noisy, {}); });
+  const double error = error_left(
+      5.0F, [](const SlopeImage& noisy, SlopeImage& out) { out = rolling_filtered(noisy, {}); });
   RecordProperty("degrees", std::to_string(error));
   EXPECT_LE(error, 1.1);
 }
@@ -38,14 +33,14 @@ TEST(RollingGuidance, TakesFineWavesOffAStepAndKeepsTheStep) {
       slopes(x, y) = {(x < 40 ? 0.5F : -0.5F) + (x % 2 == 0 ? 0.1F : -0.1F), 0.0F};
     }
   }
-  const SlopeImage out = filtered(slopes, {});
+  const SlopeImage out = rolling_filtered(slopes, {});
   for (int x = 10; x < 70; ++x) {
     EXPECT_NEAR(out(x, 4).x(), x < 40 ? 0.5F : -0.5F, 0.02F) << x;
   }
 }
 
 TEST(RollingGuidance, IsTheBilateralFilterGuidedByItsLastResult) {
-  const SlopeImage slopes = noise_slopes(40, 30);
+  const SlopeImage slopes = noise_image(40, 30);
   const ColorImage colors = random_colors(40, 30);
   const RollingGuidanceOptions options{
       .sigma_space = 3.0F, .sigma_color = 0.4F, .sigma_normal = 0.5F, .iterations = 2};
@@ -65,18 +60,18 @@ TEST(RollingGuidance, IsTheBilateralFilterGuidedByItsLastResult) {
 }
 
 TEST(RollingGuidance, NeutralOptionsAndConstantsKeepTheirBits) {
-  const SlopeImage slopes = noise_slopes(33, 17);
-  EXPECT_TRUE(same_bits(slopes, filtered(slopes, {.sigma_space = 0.0F})));
-  EXPECT_TRUE(same_bits(slopes, filtered(slopes, {.iterations = 0})));
+  const SlopeImage slopes = noise_image(33, 17);
+  EXPECT_TRUE(same_bits(slopes, rolling_filtered(slopes, {.sigma_space = 0.0F})));
+  EXPECT_TRUE(same_bits(slopes, rolling_filtered(slopes, {.iterations = 0})));
   const SlopeImage constant(33, 17, Vec2f(0.123456F, -7.654321F));
-  EXPECT_TRUE(same_bits(constant, filtered(constant, {})));
+  EXPECT_TRUE(same_bits(constant, rolling_filtered(constant, {})));
 }
 
 TEST(RollingGuidance, PixelsThatDoNotCount) {
   SlopeImage slopes(40, 40, Vec2f(0.25F, -0.5F));
   MaskImage valid(40, 40, 1.0F);
   for (int y = 0; y < 40; ++y) {
-    slopes(10, y) = {nan_value, 1.0F};
+    slopes(10, y) = {nan, 1.0F};
     slopes(30, y) = {3.0F, 3.0F};
     valid(30, y) = 0.0F;
   }
@@ -86,17 +81,17 @@ TEST(RollingGuidance, PixelsThatDoNotCount) {
 }
 
 TEST(RollingGuidance, WhatTilesKeepsTiling) {
-  const SlopeImage slopes = noise_slopes(30, 21);
+  const SlopeImage slopes = noise_image(30, 21);
   const RollingGuidanceOptions options{.sigma_normal = 0.5F, .border = Border::Wrap};
-  EXPECT_TRUE(same_bits(rolled(filtered(slopes, options), 13, 8),
-                        filtered(rolled(slopes, 13, 8), options)));
+  EXPECT_TRUE(same_bits(rolled(rolling_filtered(slopes, options), 13, 8),
+                        rolling_filtered(rolled(slopes, 13, 8), options)));
 }
 
 TEST(RollingGuidance, ARegionGivesThePixelsOfTheWhole) {
-  const SlopeImage slopes = noise_slopes(90, 80);
+  const SlopeImage slopes = noise_image(90, 80);
   const Rect region = {31, 30, 57, 43};
   const RollingGuidanceOptions options{.sigma_normal = 0.5F};
-  const SlopeImage whole = filtered(slopes, options);
+  const SlopeImage whole = rolling_filtered(slopes, options);
   SlopeImage part(90, 80, Vec2f::Constant(9.0F));
   EXPECT_EQ(rolling_guidance({slopes, {}, {}}, {part, {}}, region, options), region);
   for (int y = 0; y < 80; ++y) {
@@ -108,8 +103,8 @@ TEST(RollingGuidance, ARegionGivesThePixelsOfTheWhole) {
 }
 
 TEST(RollingGuidance, TheNumberOfThreadsChangesNothing) {
-  const SlopeImage slopes = noise_slopes(150, 101);
-  const SlopeImage many = filtered(slopes, {.sigma_normal = 0.5F});
+  const SlopeImage slopes = noise_image(150, 101);
+  const SlopeImage many = rolling_filtered(slopes, {.sigma_normal = 0.5F});
   SlopeImage one = slopes;
   const ThreadLimit limit(1);
   rolling_guidance({one, {}, {}}, {one, {}}, one.rect(), {.sigma_normal = 0.5F});
@@ -118,20 +113,20 @@ TEST(RollingGuidance, TheNumberOfThreadsChangesNothing) {
 
 TEST(RollingGuidance, RejectsOptionsOutsideTheirRanges) {
   SlopeImage slopes(4, 4, Vec2f::Zero());
-  EXPECT_THROW(filtered(slopes, {.sigma_space = nan_value}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.sigma_color = -1.0F}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.sigma_normal = nan_value}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.guide_sigma = nan_value}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.iterations = -1}), InvalidInput);
-  EXPECT_THROW(filtered(slopes, {.iterations = 21}), InvalidInput);
+  EXPECT_THROW(rolling_filtered(slopes, {.sigma_space = nan}), InvalidInput);
+  EXPECT_THROW(rolling_filtered(slopes, {.sigma_color = -1.0F}), InvalidInput);
+  EXPECT_THROW(rolling_filtered(slopes, {.sigma_normal = nan}), InvalidInput);
+  EXPECT_THROW(rolling_filtered(slopes, {.guide_sigma = nan}), InvalidInput);
+  EXPECT_THROW(rolling_filtered(slopes, {.iterations = -1}), InvalidInput);
+  EXPECT_THROW(rolling_filtered(slopes, {.iterations = 21}), InvalidInput);
 }
 
 TEST(RollingGuidance, TinyImages) {
   SlopeImage one(1, 1, Vec2f(1.0F, 2.0F));
-  EXPECT_EQ(filtered(one, {})(0, 0), Vec2f(1.0F, 2.0F));
+  EXPECT_EQ(rolling_filtered(one, {})(0, 0), Vec2f(1.0F, 2.0F));
   SlopeImage none;
   EXPECT_TRUE(rolling_guidance({none, {}, {}}, {none, {}}, {0, 0, 5, 5}).empty());
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "support/nan.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -13,10 +14,8 @@
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/segment.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 struct Scene {
   SlopeImage slopes;
@@ -304,4 +303,4 @@ TEST(Segment, RejectsWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

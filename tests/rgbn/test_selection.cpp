@@ -1,7 +1,8 @@
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <vector>
 
+#include "support/slope_fields.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -10,17 +11,10 @@
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/selection.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr double pi = 3.14159265358979;
-
-double area(const MaskImage& mask) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < mask.size(); ++i) sum += static_cast<double>(mask.data()[i]);
-  return sum;
-}
+using std::numbers::pi;
 
 MaskImage lasso(const std::vector<Vec2f>& points, int width = 100, int height = 80) {
   MaskImage mask(width, height);
@@ -220,4 +214,4 @@ TEST(SelectPolygon, RegionThreadsAndBorders) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

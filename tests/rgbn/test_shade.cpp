@@ -6,7 +6,7 @@
 #include "normalshop/rgbn/heatmap.h"
 #include "normalshop/rgbn/shade.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 TEST(Shade, LightComesFromTheUpperLeft) {
@@ -87,4 +87,4 @@ TEST(Heatmap, GrowsLighterAndMarksWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -8,10 +8,8 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/shade_curvature.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-float tone(const Vec3f& color) { return linear_to_srgb(color.y()); }
 
 TEST(ShadeCurvature, SumsTheScalesOfASphere) {
   const auto normals = ball(241, 100.0);
@@ -83,4 +81,4 @@ TEST(ShadeCurvature, RejectsOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

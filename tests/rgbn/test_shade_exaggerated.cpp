@@ -8,10 +8,8 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/shade_exaggerated.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-float tone(const Vec3f& color) { return linear_to_srgb(color.y()); }
 
 TEST(ShadeExaggerated, APlaneKeepsItsPlainLight) {
   for (const double slope : {-1.5, -0.3, 0.0, 0.6, 2.0}) {
@@ -94,4 +92,4 @@ TEST(ShadeExaggerated, RejectsOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -1,4 +1,5 @@
 #include <limits>
+#include <numbers>
 
 #include "style_checks.h"
 #include <gtest/gtest.h>
@@ -6,18 +7,18 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/shade_lambert.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr float pi = 3.14159265F;
+using std::numbers::pi_v;
 
 TEST(ShadeLambert, AddsLightsAndAmbient) {
   const Vec3f n = Vec3f(0.2F, 0.3F, 0.9F).normalized();
   const Image<Vec3f> normals(1, 1, n);
   const ColorImage albedo(1, 1, Vec3f(0.5F, 0.25F, 1.0F));
   LambertOptions options;
-  options.lights = {{{0.0F, 0.0F, 3.0F}, {pi, 0.0F, 0.0F}},
-                    {{0.0F, 1.0F, 0.0F}, {0.0F, 2.0F * pi, 0.0F}},
+  options.lights = {{{0.0F, 0.0F, 3.0F}, {pi_v<float>, 0.0F, 0.0F}},
+                    {{0.0F, 1.0F, 0.0F}, {0.0F, 2.0F * pi_v<float>, 0.0F}},
                     {{0.0F, 0.0F, -1.0F}, {9.0F, 9.0F, 9.0F}}};  // behind
   options.ambient = {0.1F, 0.1F, 0.1F};
   ColorImage out(1, 1);
@@ -29,7 +30,7 @@ TEST(ShadeLambert, AddsLightsAndAmbient) {
 TEST(ShadeLambert, ALightOfPiShowsTheAlbedoOfWhatFacesIt) {
   const Image<Vec3f> normals(1, 1, Vec3f(0.0F, 0.0F, 1.0F));
   LambertOptions options;
-  options.lights = {{{0.0F, 0.0F, 1.0F}, {pi, pi, pi}}};
+  options.lights = {{{0.0F, 0.0F, 1.0F}, {pi_v<float>, pi_v<float>, pi_v<float>}}};
   ColorImage out(1, 1);
   shade_lambert(normals, {}, out, out.rect(), options);
   EXPECT_NEAR(out(0, 0).x(), 1.0F, 1e-6F);
@@ -60,4 +61,4 @@ TEST(ShadeLambert, RejectsLightsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

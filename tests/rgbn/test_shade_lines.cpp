@@ -2,12 +2,13 @@
 #include <limits>
 
 #include "style_checks.h"
+#include "support/slope_fields.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/shade_lines.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 struct Found {
@@ -20,14 +21,6 @@ Found find(const Image<Vec3f>& normals, const LineOptions& options = {}) {
   Found f{MaskImage(w, h), MaskImage(w, h), MaskImage(w, h), MaskImage(w, h)};
   find_lines(normals, {f.contours, f.suggestive, f.ridges, f.valleys}, normals.rect(), options);
   return f;
-}
-
-double total(const MaskImage& mask) {
-  double sum = 0.0;
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) sum += static_cast<double>(mask(x, y));
-  }
-  return sum;
 }
 
 /// Middle and width of the line that a row crosses between two columns.
@@ -48,7 +41,7 @@ Profile1D across(const MaskImage& line, int y, int x0, int x1) {
 TEST(ShadeLines, APlaneHasNone) {
   const Found f = find(Image<Vec3f>(90, 70, tilted(0.8, -0.3)));
   for (const MaskImage* line : {&f.contours, &f.suggestive, &f.ridges, &f.valleys}) {
-    EXPECT_EQ(total(*line), 0.0);
+    EXPECT_EQ(area(*line), 0.0);
   }
 }
 
@@ -56,7 +49,7 @@ TEST(ShadeLines, NothingHasNone) {
   const Image<Vec3f> normals(90, 70, Vec3f::Zero());
   const Found f = find(normals);
   for (const MaskImage* line : {&f.contours, &f.suggestive, &f.ridges, &f.valleys}) {
-    EXPECT_EQ(total(*line), 0.0);
+    EXPECT_EQ(area(*line), 0.0);
   }
   ColorImage out(90, 70, Vec3f::Zero());
   shade_lines(normals, out, out.rect());
@@ -66,9 +59,9 @@ TEST(ShadeLines, NothingHasNone) {
 TEST(ShadeLines, ABallHasAnOutlineAndNothingElse) {
   const double radius = 60.0;
   const Found f = find(ball(161, radius));
-  EXPECT_EQ(total(f.suggestive), 0.0);
-  EXPECT_EQ(total(f.ridges), 0.0);
-  EXPECT_EQ(total(f.valleys), 0.0);
+  EXPECT_EQ(area(f.suggestive), 0.0);
+  EXPECT_EQ(area(f.ridges), 0.0);
+  EXPECT_EQ(area(f.valleys), 0.0);
   for (int k = 0; k < 64; ++k) {
     const double angle = 2.0 * 3.14159265358979 * k / 64.0;
     const auto at = [&](double r) {
@@ -91,13 +84,13 @@ TEST(ShadeLines, RoofAndGutterAreARidgeAndAValley) {
   const Found ridge = find(roof(0.5), options);
   EXPECT_NEAR(across(ridge.ridges, 30, 0, 160).middle, 79.5, 0.05);
   EXPECT_NEAR(across(ridge.ridges, 30, 0, 160).width, 3.0, 0.35);
-  EXPECT_EQ(total(ridge.valleys), 0.0);
-  EXPECT_EQ(total(ridge.contours), 0.0);
+  EXPECT_EQ(area(ridge.valleys), 0.0);
+  EXPECT_EQ(area(ridge.contours), 0.0);
   const Found valley = find(roof(-0.5), options);
   EXPECT_NEAR(across(valley.valleys, 30, 0, 160).middle, 79.5, 0.05);
-  EXPECT_EQ(total(valley.ridges), 0.0);
+  EXPECT_EQ(area(valley.ridges), 0.0);
   // A crease of 5 degrees is less than the limit of 15.
-  EXPECT_EQ(total(find(roof(std::tan(2.5 * 3.14159 / 180.0)), options).ridges), 0.0);
+  EXPECT_EQ(area(find(roof(std::tan(2.5 * 3.14159 / 180.0)), options).ridges), 0.0);
 }
 
 TEST(ShadeLines, RidgesAreSmoothAtAnyAngle) {
@@ -174,7 +167,7 @@ TEST(ShadeLines, WeakPartsGoOnFromStrongOnesOnly) {
   EXPECT_EQ(across(joined, 130, 0, 121).width, 0.0);  // farther than connect
   options.connect = 0.0F;
   EXPECT_EQ(across(find(crease(24.0, 10.0), options).ridges, 95, 0, 121).width, 0.0);
-  EXPECT_EQ(total(find(crease(10.0, 10.0), options).ridges), 0.0);
+  EXPECT_EQ(area(find(crease(10.0, 10.0), options).ridges), 0.0);
 }
 
 TEST(ShadeLines, InkOnPaper) {
@@ -243,4 +236,4 @@ TEST(ShadeLines, RejectsOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -8,7 +8,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/shade_toon.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 /// Light from the front, hard normals.
@@ -118,4 +118,4 @@ TEST(ShadeToon, RejectsOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <limits>
 
+#include "support/nan.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -10,7 +10,7 @@
 #include "normalshop/rgbn/detail/stroke_samples.h"
 #include "normalshop/rgbn/sketch_warp.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 constexpr float two_pi = 6.283185307179586F;
@@ -309,7 +309,6 @@ TEST(SketchWarp, RejectsBadStrokes) {
   says(message_of(boundary, {{good[0].source, line({100.0F, 130.0F}, {200.0F, 130.0F})},
                              {good[1].source, line({150.0F, 90.0F}, {150.0F, 170.0F})}}),
        "fold over near (1");
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   says(message_of(boundary, {{line({nan, 0.0F}, {1.0F, 1.0F}), good[0].target}}), "source stroke");
   says(message_of(boundary, good, {.spacing = nan}), "spacing must");
   says(message_of(boundary, good, {.point_spacing = 0.0F}), "point_spacing must");
@@ -383,4 +382,4 @@ TEST(StrokeSamples, AnInsetKeepsItsDepthAndLeavesNoGap) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

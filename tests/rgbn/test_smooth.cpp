@@ -11,20 +11,8 @@
 #include "normalshop/rgbn/sharpen.h"
 #include "normalshop/rgbn/smooth.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-using test::noise;
-using test::noise_image;
-
-bool same(const SlopeImage& a, const SlopeImage& b) {
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      if (a(x, y) != b(x, y)) return false;
-    }
-  }
-  return true;
-}
 
 class GaussianKernel : public testing::TestWithParam<float> {};
 
@@ -239,4 +227,4 @@ TEST(Sharpen, LimitingCases) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

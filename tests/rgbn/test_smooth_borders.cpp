@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 
 #include "rgbn/filter_fixtures.h"
 #include <gtest/gtest.h>
@@ -8,10 +7,8 @@
 #include "normalshop/rgbn/sharpen.h"
 #include "normalshop/rgbn/smooth.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
-
-constexpr std::array borders = {Border::Clamp, Border::Mirror, Border::Wrap};
 
 SlopeImage smoothed(const SlopeImage& image, float sigma, Border border, MaskView valid = {}) {
   SlopeImage out(image.width(), image.height());
@@ -53,7 +50,7 @@ SlopeImage plain_gaussian(const SlopeImage& image, double sigma) {
 }
 
 TEST(SmoothBorders, ClampedDirectFilterHasTheBitsOfItsFormula) {
-  const SlopeImage image = noise_slopes(301, 97);
+  const SlopeImage image = noise_image(301, 97);
   for (const float sigma : {0.3F, 1.0F, 2.0F, 4.0F}) {
     EXPECT_TRUE(same_bits(smoothed(image, sigma, Border::Clamp),
                           plain_gaussian(image, static_cast<double>(sigma))))
@@ -64,7 +61,7 @@ TEST(SmoothBorders, ClampedDirectFilterHasTheBitsOfItsFormula) {
 // Wide Gaussians see the image through points at absolute places, so moving it changes them a
 // little: by less than the 1e-4 of the slope range (2 here) that every filter keeps to.
 TEST(SmoothBorders, WhatTilesKeepsTiling) {
-  const SlopeImage image = noise_slopes(61, 47);
+  const SlopeImage image = noise_image(61, 47);
   const MaskImage valid = noise_mask(61, 47);
   const SlopeImage moved = rolled(image, 17, 29);
   const MaskImage moved_valid = rolled(valid, 17, 29);
@@ -82,7 +79,7 @@ TEST(SmoothBorders, WhatTilesKeepsTiling) {
 }
 
 TEST(SmoothBorders, WrapAndMirrorGoOnAsTheImageDoes) {
-  const SlopeImage image = noise_slopes(45, 38);
+  const SlopeImage image = noise_image(45, 38);
   for (const Border border : {Border::Wrap, Border::Mirror}) {
     const SlopeImage wide = surrounded(image, 2, border);
     const Rect middle = {90, 76, 135, 114};
@@ -127,7 +124,7 @@ TEST(SmoothBorders, MirrorTurnsTheSlopeAcrossTheBorder) {
 
 TEST(SmoothBorders, WrapKeepsConstantsAndMeans) {
   const SlopeImage constant(70, 50, Vec2f(0.123456F, -7.654321F));
-  const SlopeImage image = noise_slopes(64, 32);
+  const SlopeImage image = noise_image(64, 32);
   Vec2d mean = Vec2d::Zero();
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 64; ++x) mean += image(x, y).cast<double>() / (64.0 * 32.0);
@@ -142,7 +139,7 @@ TEST(SmoothBorders, WrapKeepsConstantsAndMeans) {
 }
 
 TEST(SmoothBorders, ARegionGivesThePixelsOfTheWhole) {
-  const SlopeImage image = noise_slopes(160, 130);
+  const SlopeImage image = noise_image(160, 130);
   const MaskImage valid = noise_mask(160, 130);
   for (const Border border : borders) {
     for (const Rect& region : {Rect{0, 0, 20, 15}, Rect{140, 100, 160, 130}, Rect{50, 40, 90, 60},
@@ -162,7 +159,7 @@ TEST(SmoothBorders, ARegionGivesThePixelsOfTheWhole) {
 }
 
 TEST(SmoothBorders, TheNumberOfThreadsChangesNothing) {
-  const SlopeImage image = noise_slopes(301, 203);
+  const SlopeImage image = noise_image(301, 203);
   const MaskImage valid = noise_mask(301, 203);
   for (const Border border : borders) {
     for (const float sigma : {3.0F, 25.0F, 100.0F}) {
@@ -188,7 +185,7 @@ TEST(SmoothBorders, TinyImagesAndWideGaussians) {
       if (border == Border::Mirror) {
         EXPECT_LE(out(0, 0).norm(), dot(0, 0).norm());
       }
-      const SlopeImage line = smoothed(noise_slopes(3, 50), sigma, border);
+      const SlopeImage line = smoothed(noise_image(3, 50), sigma, border);
       EXPECT_LT(largest_difference(line, SlopeImage(3, 50, Vec2f::Zero())), 1.5F)
           << name_of(border) << sigma;
       SlopeImage none;
@@ -198,7 +195,7 @@ TEST(SmoothBorders, TinyImagesAndWideGaussians) {
 }
 
 TEST(SmoothBorders, SharpeningTilesToo) {
-  const SlopeImage image = noise_slopes(61, 47);
+  const SlopeImage image = noise_image(61, 47);
   const auto sharpened = [](const SlopeImage& from, const SharpenOptions& options) {
     SlopeImage out(from.width(), from.height());
     sharpen(from, {}, out, from.rect(), options, Border::Wrap);
@@ -214,4 +211,4 @@ TEST(SmoothBorders, SharpeningTilesToo) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -9,7 +9,7 @@
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/stamp.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 Patch noise_patch(int width, int height) {
@@ -279,4 +279,4 @@ TEST(Stamp, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

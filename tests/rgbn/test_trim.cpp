@@ -1,13 +1,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/nan.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/curl.h"
 #include "normalshop/rgbn/trim.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
 constexpr float tau = 2.0F * std::numbers::pi_v<float>;
@@ -172,7 +173,6 @@ TEST(Trim, EdgesOfItsInput) {
   clear({}, plain(8.0F));
   clear({{}, {{{5.0F, 5.0F}}}}, plain(8.0F));
   clear({line}, plain(0.0F));
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(trim(details, {}, details.rect(), std::vector<Stroke>{line}, {}, plain(8.0F)),
                InvalidInput);
   EXPECT_THROW(trim(details, {}, details.rect(), std::vector<Stroke>{line}, patch, plain(nan)),
@@ -189,4 +189,4 @@ TEST(Trim, EdgesOfItsInput) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

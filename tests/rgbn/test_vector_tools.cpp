@@ -1,8 +1,8 @@
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 
+#include "support/slope_fields.h"
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -12,12 +12,10 @@
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/vector_tools.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-SlopeImage noise_image(int width, int height, std::uint64_t seed = 1) {
+SlopeImage uniform_slopes(int width, int height, std::uint64_t seed = 1) {
   SlopeImage image(width, height);
   Random random(seed);
   for (int y = 0; y < height; ++y) {
@@ -26,10 +24,6 @@ SlopeImage noise_image(int width, int height, std::uint64_t seed = 1) {
     }
   }
   return image;
-}
-
-bool same_bits(const SlopeImage& a, const SlopeImage& b) {
-  return a.rect() == b.rect() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2f)) == 0;
 }
 
 Vec2f painted(const Vec3f& normal, const Vec3f& direction, float strength) {
@@ -52,7 +46,7 @@ TEST(DirectionFromAngles, Axes) {
 
 TEST(PaintDirection, GoesItsPartOfTheGreatArc) {
   const Vec3f to = direction_from_angles(40.0F, 65.0F);
-  const SlopeImage image = noise_image(40, 30);
+  const SlopeImage image = uniform_slopes(40, 30);
   for (const float strength : {0.25F, 0.5F, 0.9F, 1.0F}) {
     SlopeImage out(40, 30);
     paint_direction(image, {}, out, image.rect(), to, strength);
@@ -95,7 +89,7 @@ TEST(PaintDirection, DirectionsThatChangeNothing) {
 }
 
 TEST(RotateNormals, TurnsAboutTheViewingDirection) {
-  const SlopeImage image = noise_image(30, 20);
+  const SlopeImage image = uniform_slopes(30, 20);
   SlopeImage out(30, 20);
   rotate_normals(image, {}, out, image.rect(), {0, 0, 2}, 90.0F);
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -108,7 +102,7 @@ TEST(RotateNormals, TurnsAboutAnAxisInThePicture) {
   const Vec3f y_axis(0, 1, 0);
   EXPECT_NEAR(rotated({0, 0, 1}, y_axis, 30.0F).x(), -std::tan(30.0 * 3.14159265 / 180.0), 1e-5);
   EXPECT_NEAR(rotated({0, 0, 1}, y_axis, -30.0F).x(), std::tan(30.0 * 3.14159265 / 180.0), 1e-5);
-  const SlopeImage image = noise_image(30, 20);
+  const SlopeImage image = uniform_slopes(30, 20);
   SlopeImage out(30, 20);
   const Vec3f axis = direction_from_angles(70.0F, 35.0F);
   rotate_normals(image, {}, out, image.rect(), axis, 12.0F);
@@ -147,7 +141,7 @@ TEST(RotateNormals, StopsAtTheHorizon) {
 }
 
 TEST(Flatten, GivesThePlaneAndKeepsTheRest) {
-  const SlopeImage image = noise_image(20, 10);
+  const SlopeImage image = uniform_slopes(20, 10);
   MaskImage mask(20, 10, 0.0F);
   mask(3, 3) = 1.0F;
   mask(4, 3) = 0.5F;
@@ -159,7 +153,7 @@ TEST(Flatten, GivesThePlaneAndKeepsTheRest) {
   out(3, 3) = image(3, 3);
   out(4, 3) = image(4, 3);
   EXPECT_TRUE(same_bits(image, out));
-  const SlopeImage base = noise_image(20, 10, 2);
+  const SlopeImage base = uniform_slopes(20, 10, 2);
   flatten_to(base, image, {}, out, image.rect());
   EXPECT_TRUE(same_bits(base, out));
   flatten(image, {}, out, image.rect());
@@ -167,7 +161,7 @@ TEST(Flatten, GivesThePlaneAndKeepsTheRest) {
 }
 
 TEST(BalanceMean, MakesTheMeanZero) {
-  SlopeImage image = noise_image(211, 97);
+  SlopeImage image = uniform_slopes(211, 97);
   for (std::size_t i = 0; i < image.size(); ++i) image.data()[i] += Vec2f(0.7F, -0.3F);
   image(5, 5) = {nan, 0.0F};
   MaskImage binary(211, 97, 0.0F);
@@ -218,7 +212,7 @@ TEST(NormalizeVectors, ReportsWhatItMends) {
 }
 
 TEST(FlipAndSwap, ActOnSlopesAsOnNormals) {
-  const SlopeImage image = noise_image(9, 7);
+  const SlopeImage image = uniform_slopes(9, 7);
   Image<Vec3f> normals(9, 7);
   for (std::size_t i = 0; i < image.size(); ++i) {
     normals.data()[i] = normal_from_slope(image.data()[i]);
@@ -258,7 +252,7 @@ void with_each_tool(const SlopeImage& image, const MaskImage& mask, float streng
 }
 
 TEST(VectorTools, NeutralValuesRegionsAndThreads) {
-  SlopeImage image = noise_image(70, 90);
+  SlopeImage image = uniform_slopes(70, 90);
   image(33, 44) = {nan, 1.0F};
   image(2, 2) = {-0.0F, 0.0F};
   MaskImage mask(70, 90);
@@ -313,4 +307,4 @@ TEST(VectorTools, RejectWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

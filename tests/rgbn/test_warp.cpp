@@ -1,6 +1,6 @@
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <numbers>
 
 #include "support/slope_fields.h"
 #include <gtest/gtest.h>
@@ -12,13 +12,10 @@
 #include "normalshop/rgbn/curl.h"
 #include "normalshop/rgbn/warp.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-using test::noise;
-using test::noise_image;
+using std::numbers::pi;
 
 ColorImage noise_colors(int width, int height) {
   ColorImage image(width, height);
@@ -28,21 +25,6 @@ ColorImage noise_colors(int width, int height) {
     }
   }
   return image;
-}
-
-template <class T>
-bool same_bits(const Image<T>& a, const Image<T>& b) {
-  return a.rect() == b.rect() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-template <class T>
-bool same_values(const Image<T>& a, const Image<T>& b) {
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      if (a(x, y) != b(x, y)) return false;
-    }
-  }
-  return a.rect() == b.rect();
 }
 
 /// A map given point by point.
@@ -84,7 +66,7 @@ double height(double x, double y) {
 
 /// Slopes by differences of a height, y up: the oracle knows no Jacobian.
 template <class Height>
-Vec2f slopes_of(const Height& z, double x, double y) {
+Vec2f slope_by_differences(const Height& z, double x, double y) {
   constexpr double h = 1e-4;
   return {static_cast<float>((z(x + h, y) - z(x - h, y)) / (2.0 * h)),
           static_cast<float>((z(x, y - h) - z(x, y + h)) / (2.0 * h))};
@@ -94,7 +76,7 @@ template <class Height>
 SlopeImage slope_image(const Height& z, int width, int rows) {
   SlopeImage image(width, rows);
   for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < width; ++x) image(x, y) = slopes_of(z, x, y);
+    for (int x = 0; x < width; ++x) image(x, y) = slope_by_differences(z, x, y);
   }
   return image;
 }
@@ -258,8 +240,8 @@ TEST(Warp, FourQuarterTurnsAreTheIdentity) {
     turned = next;
     turned_color = next_color;
   }
-  EXPECT_TRUE(same_values(slopes, turned));
-  EXPECT_TRUE(same_values(color, turned_color));
+  EXPECT_TRUE(same(slopes, turned));
+  EXPECT_TRUE(same(color, turned_color));
 }
 
 TEST(Warp, HeightsKeepOrGrow) {
@@ -454,8 +436,7 @@ TEST(Warp, TinyAndEmptyImages) {
 TEST(Warp, PlacesThatAreNoNumbersReadSomething) {
   const SlopeImage source(5, 5, Vec2f(1.0F, 2.0F));
   SlopeImage out(2, 2);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const WarpMap map = map_from([=](double, double) {
+  const WarpMap map = map_from([](double, double) {
     return WarpPoint{{nan, 1e300}, Eigen::Matrix2d::Identity()};
   });
   warp({source, {}, {}}, {out, {}}, out.rect(), map, {});
@@ -463,4 +444,4 @@ TEST(Warp, PlacesThatAreNoNumbersReadSomething) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

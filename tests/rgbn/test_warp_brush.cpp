@@ -1,19 +1,18 @@
 #include <cmath>
-#include <limits>
 
+#include "support/nan.h"
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/warp_brush.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-const Rect area = {0, 0, 256, 256};
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
+const Rect canvas = {0, 0, 256, 256};
 
-bool same(const WarpLattice& a, const WarpLattice& b) {
+bool same_nodes(const WarpLattice& a, const WarpLattice& b) {
   for (int row = 0; row < a.rows(); ++row) {
     for (int column = 0; column < a.columns(); ++column) {
       const WarpLattice::Node& m = a.node(column, row);
@@ -26,7 +25,7 @@ bool same(const WarpLattice& a, const WarpLattice& b) {
 
 TEST(WarpBrush, GrabTakesThePlaceAlong) {
   for (const Vec2f& to : {Vec2f(100.0F, 140.0F), Vec2f(210.0F, 60.0F)}) {  // one step and several
-    WarpLattice lattice(area);
+    WarpLattice lattice(canvas);
     const WarpDab dab = grab(lattice, {90.0F, 130.0F}, to, {.radius = 60.0F});
     EXPECT_EQ(dab.strength, 1.0F);
     EXPECT_LT((lattice.at(to.cast<double>()).position - Vec2d(90.0, 130.0)).norm(), 0.1);
@@ -36,7 +35,7 @@ TEST(WarpBrush, GrabTakesThePlaceAlong) {
 
 // One step of a grab is the exact inverse of y + motion * (1 - |y - centre|^2 / radius^2)^3.
 TEST(WarpBrush, GrabFollowsTheFalloffAroundItsStart) {
-  WarpLattice lattice(area, 2.0F);
+  WarpLattice lattice(canvas, 2.0F);
   const Vec2d center(120.0, 128.0);
   const Vec2d motion(12.0, -8.0);
   grab(lattice, {120.0F, 128.0F}, {132.0F, 120.0F}, {.radius = 80.0F});
@@ -48,7 +47,7 @@ TEST(WarpBrush, GrabFollowsTheFalloffAroundItsStart) {
 }
 
 TEST(WarpBrush, PushSmearsAlongItsWay) {
-  WarpLattice lattice(area);
+  WarpLattice lattice(canvas);
   push(lattice, {80.0F, 128.0F}, {150.0F, 128.0F}, {.radius = 30.0F, .strength = 0.5F});
   // What is shown on the way comes from its beginning, by about half of it at its end.
   const double from = lattice.at({140.0, 128.0}).position.x();
@@ -60,7 +59,7 @@ TEST(WarpBrush, PushSmearsAlongItsWay) {
 
 TEST(WarpBrush, PinchScalesTheCentre) {
   for (const float strength : {1.0F, 0.3F, -1.0F, 2.0F}) {
-    WarpLattice lattice(area, 2.0F);
+    WarpLattice lattice(canvas, 2.0F);
     pinch(lattice, {128.0F, 128.0F}, {.radius = 90.0F, .strength = strength});
     const WarpPoint p = lattice.at({128.0, 128.0});
     EXPECT_LT((p.position - Vec2d(128.0, 128.0)).norm(), 1e-9);
@@ -71,7 +70,7 @@ TEST(WarpBrush, PinchScalesTheCentre) {
 }
 
 TEST(WarpBrush, TwirlTurnsCounterClockwiseAndKeepsAreas) {
-  WarpLattice lattice(area, 2.0F);
+  WarpLattice lattice(canvas, 2.0F);
   twirl(lattice, {128.0F, 128.0F}, {.radius = 100.0F, .strength = 1.0F});
   // What was to the right of the centre is above it now (y down).
   const Vec2d above = lattice.at({128.0, 126.0}).position;
@@ -86,7 +85,7 @@ TEST(WarpBrush, TwirlTurnsCounterClockwiseAndKeepsAreas) {
 }
 
 TEST(WarpBrush, ChangesNothingOutsideItsRectangle) {
-  WarpLattice lattice(area);
+  WarpLattice lattice(canvas);
   const WarpDab dab = twirl(lattice, {100.0F, 120.0F}, {.radius = 40.0F, .strength = 2.0F});
   EXPECT_GE(dab.changed.x0, 100 - 40 - 9);
   EXPECT_LE(dab.changed.x1, 100 + 40 + 10);
@@ -99,7 +98,7 @@ TEST(WarpBrush, ChangesNothingOutsideItsRectangle) {
 }
 
 TEST(WarpBrush, NeutralValuesLeaveTheLattice) {
-  WarpLattice lattice(area);
+  WarpLattice lattice(canvas);
   twirl(lattice, {100.0F, 120.0F}, {.radius = 40.0F, .strength = 0.7F});
   const WarpLattice before = lattice;
   const Vec2f p(110.0F, 118.0F);
@@ -107,11 +106,11 @@ TEST(WarpBrush, NeutralValuesLeaveTheLattice) {
   EXPECT_TRUE(pinch(lattice, p, {.radius = 0.0F}).changed.empty());
   EXPECT_TRUE(push(lattice, p, p, {.radius = 40.0F}).changed.empty());
   EXPECT_TRUE(grab(lattice, p, p, {.radius = 40.0F}).changed.empty());
-  EXPECT_TRUE(same(before, lattice));
+  EXPECT_TRUE(same_nodes(before, lattice));
 }
 
 TEST(WarpBrush, LimitsItsStrengthBeforeThePictureFolds) {
-  WarpLattice lattice(area);
+  WarpLattice lattice(canvas);
   const Vec2f p(128.0F, 128.0F);
   const WarpBrushOptions inflate{.radius = 60.0F, .strength = -2.0F, .least_area = 0.05F};
   EXPECT_EQ(pinch(lattice, p, inflate).strength, -2.0F);  // 16 times the area: 1 / 16
@@ -139,16 +138,16 @@ TEST(WarpBrush, LessStrengthIsAsIfAskedFor) {
       const WarpDab dab = brush(limited);
       ASSERT_NE(dab.strength, 0.0F);
       ASSERT_LT(std::abs(dab.strength), std::abs(o.strength));
-      EXPECT_FALSE(same(limited, asked));
+      EXPECT_FALSE(same_nodes(limited, asked));
       o.strength = dab.strength;
       EXPECT_EQ(brush(asked).strength, dab.strength);
-      EXPECT_TRUE(same(limited, asked));
+      EXPECT_TRUE(same_nodes(limited, asked));
     }
   }
 }
 
 TEST(WarpBrush, RefusesAFoldAndNamesThePlace) {
-  WarpLattice lattice(area);
+  WarpLattice lattice(canvas);
   WarpBrushOptions inflate{.radius = 60.0F, .strength = -2.0F, .least_area = 0.05F};
   inflate.on_fold = OnFold::Refuse;
   pinch(lattice, {128.0F, 100.0F}, inflate);
@@ -159,7 +158,7 @@ TEST(WarpBrush, RefusesAFoldAndNamesThePlace) {
   } catch (const InvalidInput& error) {
     EXPECT_NE(std::string(error.what()).find("(128, 100)"), std::string::npos) << error.what();
   }
-  EXPECT_TRUE(same(before, lattice));
+  EXPECT_TRUE(same_nodes(before, lattice));
 }
 
 TEST(WarpBrush, CrossesTheSeamOfALatticeThatRepeats) {
@@ -179,22 +178,22 @@ TEST(WarpBrush, CrossesTheSeamOfALatticeThatRepeats) {
 }
 
 TEST(WarpBrush, RejectsBadInput) {
-  WarpLattice lattice(area);
+  WarpLattice lattice(canvas);
   const Vec2f p(128.0F, 128.0F);
-  const Vec2f nowhere(nan_value, 0.0F);
+  const Vec2f nowhere(nan, 0.0F);
   EXPECT_THROW(twirl(lattice, nowhere, {}), InvalidInput);
   EXPECT_THROW(grab(lattice, p, nowhere, {}), InvalidInput);
   EXPECT_THROW(push(lattice, p, nowhere, {}), InvalidInput);
-  EXPECT_THROW(pinch(lattice, p, {.radius = nan_value}), InvalidInput);
+  EXPECT_THROW(pinch(lattice, p, {.radius = nan}), InvalidInput);
   EXPECT_THROW(pinch(lattice, p, {.radius = -1.0F}), InvalidInput);
   EXPECT_THROW(pinch(lattice, p, {.radius = 3.0F}), InvalidInput);  // less than two cells
-  EXPECT_THROW(pinch(lattice, p, {.strength = nan_value}), InvalidInput);
-  EXPECT_THROW(pinch(lattice, p, {.least_area = nan_value}), InvalidInput);
+  EXPECT_THROW(pinch(lattice, p, {.strength = nan}), InvalidInput);
+  EXPECT_THROW(pinch(lattice, p, {.least_area = nan}), InvalidInput);
   EXPECT_THROW(pinch(lattice, p, {.least_area = 0.0F}), InvalidInput);
   WarpLattice tile({0, 0, 64, 64}, 4.0F, LatticeEdge::Repeat);
   EXPECT_THROW(pinch(tile, p, {.radius = 40.0F}), InvalidInput);
-  EXPECT_TRUE(same(lattice, WarpLattice(area)));
+  EXPECT_TRUE(same_nodes(lattice, WarpLattice(canvas)));
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

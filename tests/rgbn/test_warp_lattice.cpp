@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -10,10 +11,10 @@
 #include "normalshop/rgbn/warp_brush.h"
 #include "normalshop/rgbn/warp_lattice.h"
 
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// A lattice after some brushes, its cells not of whole pixels.
 WarpLattice brushed(float spacing = 5.0F) {
@@ -90,7 +91,7 @@ TEST(WarpLattice, ARunGivesThePointsOneByOne) {
 
 /// How much of the warped gradient turns around the cells' outlines: Gauss quadrature of the
 /// analytic gradient through the lattice, no differences. `transposed`: as it is right.
-double curl_share(const WarpLattice& lattice, bool transposed) {
+double lattice_curl_share(const WarpLattice& lattice, bool transposed) {
   const std::array<double, 5> nodes = {-0.9061798459386640, -0.5384693101056831, 0.0,
                                        0.5384693101056831, 0.9061798459386640};
   const std::array<double, 5> weights = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
@@ -136,8 +137,8 @@ double curl_share(const WarpLattice& lattice, bool transposed) {
 
 TEST(WarpLattice, WarpedGradientsStayFreeOfCurl) {
   const WarpLattice lattice = brushed();
-  EXPECT_LT(curl_share(lattice, true), 1e-6);
-  EXPECT_GT(curl_share(lattice, false), 1e-3);  // what a wrong transpose would give
+  EXPECT_LT(lattice_curl_share(lattice, true), 1e-6);
+  EXPECT_GT(lattice_curl_share(lattice, false), 1e-3);  // what a wrong transpose would give
 }
 
 // Oracle: slopes of z(W(x)) by differences of the height through the lattice.
@@ -330,4 +331,4 @@ TEST(WarpLattice, RejectsWhatIsNoLattice) {
 }
 
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -11,8 +12,6 @@
 
 /// Slopes full of creases and what noise makes of them: what filters that keep edges are judged by.
 namespace normalshop::test {
-
-inline constexpr float pi = 3.14159265F;
 
 /// Four quarters of a square: a pyramid and a dome on a plane, roof ridges, waves. Slopes up
 /// to 1.4.
@@ -50,7 +49,8 @@ inline SlopeImage relief(int size) {
     return across * (phase - std::floor(phase) < 0.5F ? 0.6F : -0.6F);
   });
   fill(half, half, [](float x, float y) -> Vec2f {
-    return Vec2f(0.5F * std::cos(3.0F * pi * x), 0.3F * std::cos(2.0F * pi * y));
+    return Vec2f(0.5F * std::cos(3.0F * std::numbers::pi_v<float> * x),
+                 0.3F * std::cos(2.0F * std::numbers::pi_v<float> * y));
   });
   return slopes;
 }
@@ -59,13 +59,13 @@ inline SlopeImage relief(int size) {
 /// Gaussian noise of standard deviation tan(degrees).
 inline SlopeImage with_noise(const SlopeImage& slopes, float degrees, std::uint64_t seed) {
   Random random(seed);
-  const float deviation = std::tan(degrees * pi / 180.0F);
+  const float deviation = std::tan(degrees * std::numbers::pi_v<float> / 180.0F);
   SlopeImage noisy(slopes.width(), slopes.height());
   for (int y = 0; y < slopes.height(); ++y) {
     for (int x = 0; x < slopes.width(); ++x) {
       // Box and Muller: two independent numbers at once.
       const float radius = deviation * std::sqrt(-2.0F * std::log(1.0F - random.uniform()));
-      const float angle = 2.0F * pi * random.uniform();
+      const float angle = 2.0F * std::numbers::pi_v<float> * random.uniform();
       const Vec3f n = normal_from_slope(slopes(x, y));
       const Vec3f across = n.cross(Vec3f::UnitY()).normalized();
       const Vec3f along = n.cross(across);

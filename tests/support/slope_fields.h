@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <cstring>
+
+#include "support/nan.h"
 
 #include "normalshop/core/image.h"
 #include "normalshop/core/random.h"
 #include "normalshop/rgbn/project.h"
 
-/// Slopes and masks that tests of integrability share.
+/// Slopes and masks that tests share, and what compares them.
 namespace normalshop::test {
-
-inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 inline float noise(int x, int y, std::uint32_t seed) {
   const auto bits = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed);
@@ -84,7 +84,17 @@ inline SlopeImage projected(const SlopeImage& source, const MaskImage& valid,
   return out;
 }
 
-inline bool same(const SlopeImage& a, const SlopeImage& b) {
+/// Pixels that a mask covers.
+inline double area(const MaskImage& mask) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i) sum += static_cast<double>(mask.data()[i]);
+  return sum;
+}
+
+/// Equal as numbers are: 0 and -0 are the same, and nothing is the same as NaN.
+template <class T>
+bool same(const Image<T>& a, const Image<T>& b) {
+  if (a.rect() != b.rect()) return false;
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) {
       if (a(x, y) != b(x, y)) return false;
@@ -93,13 +103,21 @@ inline bool same(const SlopeImage& a, const SlopeImage& b) {
   return true;
 }
 
-inline double largest_difference(const SlopeImage& a, const SlopeImage& b,
-                                 const MaskImage& valid = {}) {
-  double largest = 0.0;
+template <class T>
+bool same_bits(const Image<T>& a, const Image<T>& b) {
+  return a.rect() == b.rect() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// The largest distance between slopes, where the mask is not 0. NaN if one of them is.
+inline float largest_difference(const SlopeImage& a, const SlopeImage& b,
+                                const MaskImage& valid = {}) {
+  float largest = 0.0F;
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) {
       if (!valid.empty() && valid(x, y) == 0.0F) continue;
-      largest = std::max(largest, static_cast<double>((a(x, y) - b(x, y)).norm()));
+      const float apart = (a(x, y) - b(x, y)).norm();
+      if (std::isnan(apart)) return apart;
+      largest = std::max(largest, apart);
     }
   }
   return largest;
