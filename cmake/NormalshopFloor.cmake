@@ -33,12 +33,12 @@ function(normalshop_join target)
   endforeach()
 endfunction()
 
-# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [ALONE] [SUITES]): one GoogleTest program for
-# a folder of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers
-# without optimisation. ALONE: the sources share names and are never compiled in one go. SUITES: the
-# program takes long to start, so ctest starts it once a suite instead of once a test.
+# normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [SUITES]): one GoogleTest program for a folder
+# of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers without
+# optimisation. SUITES: the program takes long to start, so ctest starts it once a suite instead of
+# once a test.
 function(normalshop_test name)
-  cmake_parse_arguments(TEST "ALONE;SUITES" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
+  cmake_parse_arguments(TEST "SUITES" "" "SOURCES;LIBRARIES;LOOPS" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
@@ -47,9 +47,7 @@ function(normalshop_test name)
   if(NORMALSHOP_SANITIZE AND TEST_LOOPS)
     set_source_files_properties(${TEST_LOOPS} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
   endif()
-  if(NOT TEST_ALONE)
-    normalshop_join(test_${name})
-  endif()
+  normalshop_join(test_${name})
   if(TEST_SUITES)
     normalshop_add_suites(test_${name} ${TEST_SOURCES})
   else()
