@@ -6,16 +6,18 @@
 namespace normalshop::test {
 namespace {
 
-constexpr int width = 96;
-constexpr int height = 64;
+constexpr int picture_width = 96;
+constexpr int picture_height = 64;
 
 /// A disc around a pixel that tilts to the right, on ground that is level; both a little rough.
 SlopeImage disc_slopes(int column, int row) {
-  SlopeImage slopes(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const int u = (x - column + width + width / 2) % width - width / 2;
-      const int v = (y - row + height + height / 2) % height - height / 2;
+  SlopeImage slopes(picture_width, picture_height);
+  for (int y = 0; y < picture_height; ++y) {
+    for (int x = 0; x < picture_width; ++x) {
+      const int u =
+          (x - column + picture_width + picture_width / 2) % picture_width - picture_width / 2;
+      const int v =
+          (y - row + picture_height + picture_height / 2) % picture_height - picture_height / 2;
       const float rough = 0.01F * static_cast<float>((u * 7 + v * 3) % 5);
       slopes(x, y) = {u * u + v * v < 256 ? 0.6F : 0.0F, rough};
     }
@@ -25,10 +27,10 @@ SlopeImage disc_slopes(int column, int row) {
 
 /// Blue to the left of the middle column, red to the right.
 ColorImage two_colors() {
-  ColorImage colors(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      colors(x, y) = x < width / 2 ? Vec3f(0.1F, 0.1F, 0.6F) : Vec3f(0.6F, 0.1F, 0.1F);
+  ColorImage colors(picture_width, picture_height);
+  for (int y = 0; y < picture_height; ++y) {
+    for (int x = 0; x < picture_width; ++x) {
+      colors(x, y) = x < picture_width / 2 ? Vec3f(0.1F, 0.1F, 0.6F) : Vec3f(0.6F, 0.1F, 0.1F);
     }
   }
   return colors;
@@ -62,8 +64,8 @@ TEST_P(PickedAreas, AreWhatThePointLiesIn) {
   ImageDocument document = picture(slopes);
   // Pixel (60, 30) from the picture's middle, y up.
   document.apply(mark(GetParam(), "[[[12.5, 1.5]]]"));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < picture_height; ++y) {
+    for (int x = 0; x < picture_width; ++x) {
       const float distance =
           std::hypot(static_cast<float>(x) - 60.0F, static_cast<float>(y) - 30.0F);
       const float share = marked(document, slopes, x, y);
@@ -100,10 +102,10 @@ TEST_P(PickedAreas, GoOnBeyondTheSidesOfATile) {
   const SlopeImage whole = disc_slopes(48, 32);
   ImageDocument middle = picture(whole, Border::Wrap);
   middle.apply(mark(GetParam(), "[[[0.5, -0.5]]]", feather));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < picture_height; ++y) {
+    for (int x = 0; x < picture_width; ++x) {
       ASSERT_NEAR(marked(tile, slopes, x, y),
-                  marked(middle, whole, (x + 48) % width, (y + 32) % height), 1e-5F)
+                  marked(middle, whole, (x + 48) % picture_width, (y + 32) % picture_height), 1e-5F)
           << x << ", " << y;
     }
   }
@@ -134,7 +136,7 @@ TEST_P(PickedAreas, LieOnTheSurface) {
 TEST_P(PickedAreas, NeedStrokes) { EXPECT_THROW(mark(GetParam(), "[]"), InvalidInput); }
 
 TEST(PickedByColor, ColorsDivideWhatNormalsDoNot) {
-  const SlopeImage level(width, height, Vec2f(0.1F, 0.0F));
+  const SlopeImage level(picture_width, picture_height, Vec2f(0.1F, 0.0F));
   for (const char* area : {"segments", "alike"}) {
     ImageDocument document = colored(level);
     document.apply(mark(area, "[[[-20, 0]]]"));
@@ -150,7 +152,7 @@ TEST(PickedByColor, ColorsDivideWhatNormalsDoNot) {
 }
 
 TEST(PickedByColor, StrokesPickAllThatTheyTouch) {
-  const SlopeImage level(width, height, Vec2f(0.1F, 0.0F));
+  const SlopeImage level(picture_width, picture_height, Vec2f(0.1F, 0.0F));
   ImageDocument document = colored(level);
   document.apply(mark("segments", "[[[-20, 0], [20, 5]]]"));
   EXPECT_NEAR(marked(document, level, 10, 30), 1.0F, 1e-5F);
@@ -158,7 +160,7 @@ TEST(PickedByColor, StrokesPickAllThatTheyTouch) {
 }
 
 TEST(PickedByColor, WhatDoesNotReadPicksToo) {
-  const SlopeImage level(width, height, Vec2f(0.1F, 0.0F));
+  const SlopeImage level(picture_width, picture_height, Vec2f(0.1F, 0.0F));
   ImageDocument document = colored(level);
   document.apply(edit(R"("operator": "combine", "view": "front", "strokes": [[[-20, 0]]],
                          "options": {"image": "wave.png", "area": "alike"})"));
