@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "verbs.h"
 
@@ -23,13 +24,14 @@ std::string text_of(const Value& value) {
   if (value.text() != nullptr) return *value.text();
   if (value.number() != nullptr) {
     std::array<char, 32> text{};
-    const bool whole = *value.number() == std::round(*value.number());
-    std::snprintf(text.data(), text.size(), whole ? "%.0f" : "%.4g", *value.number());
+    const double number = *value.number();
+    const bool whole = std::abs(number) < 1e15 && number == std::round(number);
+    std::snprintf(text.data(), text.size(), whole ? "%.0f" : "%.4g", number);
     return text.data();
   }
   if (value.boolean() != nullptr) return *value.boolean() ? "yes" : "no";
   std::string all;
-  if (value.array() == nullptr) return "none";
+  if (value.array() == nullptr || value.array()->empty()) return "none";
   for (const Value& item : *value.array()) all += (all.empty() ? "" : ", ") + text_of(item);
   return all;
 }

@@ -93,6 +93,14 @@ TEST_F(Verbs, TellAboutThemselves) {
   }
 }
 
+TEST_F(Verbs, InfoIsForReading) {
+  const std::string text = run_all({{"info", path("square.obj")}})[0].out;
+  EXPECT_NE(text.find("\ntriangles: 2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\ntexture set:\n  name: skin\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nnotes:\n  "), std::string::npos) << text;
+  EXPECT_EQ(text.find('['), std::string::npos) << text;
+}
+
 TEST_F(Verbs, AreThoseOfTheProgram) {
   EXPECT_EQ(run_program({"--version"}).out, call_program({"--version"}).out);
   const ProgramRun wrong = run_program({"paint"});

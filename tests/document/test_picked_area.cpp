@@ -1,6 +1,7 @@
 #include "document/picture_fixture.h"
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/parallel.h"
 
 /// Areas that strokes pick in what is there: segments, and what is alike.
 namespace normalshop::test {
@@ -122,6 +123,64 @@ TEST_P(PickedAreas, SeeDetailsThatTheEditIgnores) {
   EXPECT_FALSE(document.normals().edited(20, 10));
 }
 
+/// A part of the picture is divided by itself, however far the operator reads beyond it.
+TEST_P(PickedAreas, DependOnTheViewAlone) {
+  const SlopeImage slopes = disc_slopes(60, 30);
+  std::vector<std::vector<bool>> changed;
+  for (const char* sigma : {"1", "9"}) {
+    ImageDocument document = picture(slopes);
+    document.apply(edit(R"("operator": "smooth", "view": {"facing": [6, -8, 0], "width": 30},
+                           "options": {"sigma": )" +
+                        std::string(sigma) + R"(, "area": ")" + GetParam() +
+                        R"("}, "strokes": [[[4, 8]]])"));
+    changed.emplace_back();
+    for (int y = 0; y < picture_height; ++y) {
+      for (int x = 0; x < picture_width; ++x) {
+        changed.back().push_back(document.normals().edited(x, y));
+      }
+    }
+    EXPECT_GT(document.normals().edited_count(), 50U);
+  }
+  // Beside the disc's border, where a wider Gaussian changes what a narrow one does not, they
+  // differ.
+  int apart = 0;
+  for (std::size_t i = 0; i < changed[0].size(); ++i) apart += changed[0][i] && !changed[1][i];
+  EXPECT_EQ(apart, 0);
+  ImageDocument beside = picture(slopes);
+  EXPECT_THROW(
+      beside.apply(edit(R"("operator": "smooth", "view": {"facing": [6, -8, 0], "width": 30},
+                           "options": {"sigma": 9, "area": ")" +
+                        std::string(GetParam()) + R"("}, "strokes": [[[-20, 0]]])")),
+      InvalidInput);
+}
+
+/// Segments have none that are so small.
+TEST(PickedAlike, HolesCloseUnderTheFeather) {
+  SlopeImage slopes = disc_slopes(48, 32);
+  for (const int x : {44, 48, 52}) slopes(x, 32) = {-3.0F, 0.0F};
+  ImageDocument document = picture(slopes);
+  document.apply(mark("alike", "[[[0.5, 4.5]]]", R"(, "feather": 16)"));
+  EXPECT_NEAR(marked(document, slopes, 48, 30), 1.0F, 1e-4F);
+}
+
+TEST_P(PickedAreas, AreTheSameOnOneThread) {
+  const SlopeImage slopes = disc_slopes(60, 30);
+  ImageDocument many = picture(slopes);
+  many.apply(mark(GetParam(), "[[[12.5, 1.5]], [[-30, -20], [-20, -18]]]", R"(, "feather": 7)"));
+  ImageDocument one = picture(slopes);
+  {
+    const ThreadLimit limit(1);
+    one.apply(mark(GetParam(), "[[[12.5, 1.5]], [[-30, -20], [-20, -18]]]", R"(, "feather": 7)"));
+  }
+  EXPECT_EQ(farthest(one, slopes_of(many).slopes), 0.0F);
+}
+
+TEST_P(PickedAreas, TakeAnyFeather) {
+  ImageDocument document = picture(disc_slopes(60, 30), Border::Wrap);
+  document.apply(mark(GetParam(), "[[[12.5, 1.5]]]", R"(, "feather": 1e6)"));
+  EXPECT_GT(document.normals().edited_count(), 300U);
+}
+
 TEST_P(PickedAreas, LieOnTheSurface) {
   ImageDocument document = picture(disc_slopes(60, 30));
   try {
@@ -166,6 +225,29 @@ TEST(PickedByColor, WhatDoesNotReadPicksToo) {
                          "options": {"image": "wave.png", "area": "alike"})"));
   EXPECT_TRUE(document.normals().edited(10, 30));
   EXPECT_FALSE(document.normals().edited(60, 30));
+}
+
+/// Where all is picked, what only lays something down does what it does everywhere, on steep
+/// surface, too.
+TEST(PickedOnAMesh, TakesNothingElseThanTheView) {
+  const std::string start = R"("operator": "combine", "view": "front", "options": {
+      "image": "wave.png", "repeat": true, "size": 0.3)";
+  Document whole = hemisphere_document(128);
+  whole.apply(edit(start + "}"));
+  Document picked = hemisphere_document(128);
+  picked.apply(
+      edit(start + R"(, "area": "alike", "angle_tolerance": 180}, "strokes": [[[0, 0]]])"));
+  std::size_t changed = 0;
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      if (!picked.storage().sets[0].normals.edited(x, y)) continue;
+      ++changed;
+      // Towards the rim, where hardly anything arrives, what is picked ends softly.
+      EXPECT_LT(degrees_between(map_of(picked).normal(x, y), map_of(whole).normal(x, y)), 0.02F)
+          << x << ", " << y;
+    }
+  }
+  EXPECT_GT(changed, 3000U);
 }
 
 /// On a mesh the colours come from its colour map: the right half of the square is bright.

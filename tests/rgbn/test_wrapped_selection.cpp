@@ -2,28 +2,30 @@
 
 #include <gtest/gtest.h>
 
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/core/random.h"
+#include "normalshop/rgbn/mask.h"
 #include "normalshop/rgbn/segment.h"
 #include "normalshop/rgbn/selection.h"
 
 /// In a tile, segments and what the wand selects know no sides.
-namespace normalshop {
+namespace normalshop::test {
 namespace {
 
-constexpr int width = 60;
-constexpr int height = 44;
+constexpr int tile_width = 60;
+constexpr int tile_height = 44;
 
 /// Slopes of a disc that stands out from noisy ground, its middle there; it goes on beyond the
 /// sides.
 SlopeImage tile_with_disc(int column, int row) {
-  SlopeImage slopes(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const int u = (x - column + width + width / 2) % width - width / 2;
-      const int v = (y - row + height + height / 2) % height - height / 2;
+  SlopeImage slopes(tile_width, tile_height);
+  for (int y = 0; y < tile_height; ++y) {
+    for (int x = 0; x < tile_width; ++x) {
+      const int u = (x - column + tile_width + tile_width / 2) % tile_width - tile_width / 2;
+      const int v = (y - row + tile_height + tile_height / 2) % tile_height - tile_height / 2;
       const auto noise = [&](std::uint32_t seed) {
-        const auto a = static_cast<std::uint32_t>(u + width);
-        const auto b = static_cast<std::uint32_t>(v + height);
+        const auto a = static_cast<std::uint32_t>(u + tile_width);
+        const auto b = static_cast<std::uint32_t>(v + tile_height);
         return 0.02F * (static_cast<float>(hash(a, b, seed) >> 8U) * 0x1p-24F - 0.5F);
       };
       slopes(x, y) = Vec2f(u * u + v * v < 144 ? 0.8F : 0.0F, 0.0F) + Vec2f(noise(1), noise(2));
@@ -79,7 +81,7 @@ TEST(WrappedSegments, TilesOfOnePixel) {
 
 TEST(WrappedWand, GoesOnBeyondTheSides) {
   const SlopeImage corner = tile_with_disc(1, 42);
-  MaskImage mask(width, height);
+  MaskImage mask(tile_width, tile_height);
   const auto select = [&](Border border) {
     select_alike({corner, {}, {}}, {1, 42}, mask, {.angle_tolerance = 5.0F}, border);
     float sum = 0.0F;
@@ -90,7 +92,7 @@ TEST(WrappedWand, GoesOnBeyondTheSides) {
   EXPECT_EQ(mask(59, 1), 1.0F);
   EXPECT_EQ(mask(30, 20), 0.0F);
   const SlopeImage middle = tile_with_disc(30, 22);
-  MaskImage expected(width, height);
+  MaskImage expected(tile_width, tile_height);
   select_alike({middle, {}, {}}, {30, 22}, expected, {.angle_tolerance = 5.0F});
   float sum = 0.0F;
   for (std::size_t i = 0; i < expected.size(); ++i) sum += expected.data()[i];
@@ -98,5 +100,42 @@ TEST(WrappedWand, GoesOnBeyondTheSides) {
   EXPECT_LT(select(Border::Clamp), 0.5F * all);
 }
 
+TEST(WrappedMasks, GrowAndFeatherBeyondTheSides) {
+  const auto disc_mask = [](int column, int row) {
+    const SlopeImage slopes = tile_with_disc(column, row);
+    MaskImage mask(tile_width, tile_height);
+    for_pixels(mask.rect(),
+               [&](int x, int y) { mask(x, y) = slopes(x, y).x() > 0.4F ? 1.0F : 0.0F; });
+    return mask;
+  };
+  const MaskImage corner = disc_mask(0, 0);
+  const MaskImage middle = disc_mask(30, 22);
+  const auto expect_turned = [&](const auto& change, const char* what) {
+    MaskImage a(tile_width, tile_height);
+    MaskImage b(tile_width, tile_height);
+    change(corner, a);
+    change(middle, b);
+    for (int y = 0; y < tile_height; ++y) {
+      for (int x = 0; x < tile_width; ++x) {
+        ASSERT_EQ(a(x, y), b((x + 30) % tile_width, (y + 22) % tile_height)) << what;
+      }
+    }
+  };
+  for (const float distance : {3.0F, -3.0F, 40.0F}) {
+    expect_turned(
+        [&](const MaskImage& mask, MaskImage& out) {
+          grow_mask(mask, out, out.rect(), {distance}, Border::Wrap);
+        },
+        "grown");
+  }
+  for (const float feather : {5.0F, 90.0F}) {
+    expect_turned(
+        [&](const MaskImage& mask, MaskImage& out) {
+          feather_mask(mask, out, out.rect(), {feather}, Border::Wrap);
+        },
+        "feathered");
+  }
+}
+
 }  // namespace
-}  // namespace normalshop
+}  // namespace normalshop::test

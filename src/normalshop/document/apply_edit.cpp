@@ -1,5 +1,6 @@
 #include "normalshop/document/apply_edit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "normalshop/chart/effective.h"
@@ -88,10 +89,15 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
       }
     }
   });
-  if (!ignore) source.grazing = limit_grazing(source.slopes);
+  if (!ignore && edit.operation->reads()) source.grazing = limit_grazing(source.slopes);
   extend(source.validity, source.slopes);
   if (with_base) extend(source.validity, source.base);
   return source;
+}
+
+bool has_colors(const StorageAtlas& storage) {
+  return std::any_of(storage.sets.begin(), storage.sets.end(),
+                     [](const StorageSet& set) { return !set.albedo.empty(); });
 }
 
 /// Rasterises, pulls what the operator needs and weighs.
@@ -103,7 +109,7 @@ EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas&
   PullOptions pulled;
   const EditOperator& operation = *edit.operation;
   pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep);
-  pulled.albedo = operation.reads_colors();
+  pulled.albedo = operation.reads_colors() && has_colors(storage);
   pull_attributes(mesh, storage, chart, pulled);
   EffectiveOptions effective;
   effective.full_angle = edit.effective.full;
@@ -167,7 +173,7 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   Source source;
   if (edit.operation->reads() || edit.operation->picks()) source = make_source(edit, chart);
   chart.normal = {};
-  input.source = source.slopes;
+  if (edit.operation->reads()) input.source = source.slopes;
   if (edit.operation->picks()) {
     input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
   }

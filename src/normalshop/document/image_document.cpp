@@ -278,8 +278,9 @@ EditReport ImageDocument::apply(const Edit& edit) {
   }
   SlopeImage seen;
   if (edit.operation->picks()) {
-    seen = pull_slopes(images_.normals, placed.window, DetailsRule::Keep, weight);
-    input.seen = seen;
+    const bool shared = !slopes.empty() && edit.details == DetailsRule::Keep;
+    if (!shared) seen = pull_slopes(images_.normals, placed.window, DetailsRule::Keep, weight);
+    input.seen = shared ? slopes.view() : seen.view();
     input.validity = weight;
   }
   SlopeImage base;  // the plane of the picture

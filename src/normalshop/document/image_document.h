@@ -32,6 +32,7 @@ class ImageDocument {
   const ColorImage& colors() const { return images_.colors; }
   /// Empty: edits arrive everywhere.
   const MaskImage& mask() const { return images_.mask; }
+  Border border() const { return images_.border; }
   const std::vector<Edit>& log() const { return log_; }
 
   /// Applies an edit and adds it to the log. Throws InvalidInput, and nothing has changed then, for

@@ -20,10 +20,10 @@ std::string number_text(float number) {
   return text.data();
 }
 
-bool on_surface(const EditingChart& chart, const Vec2f& p) {
+bool on_surface(const EditingChart& chart, const Vec2f& p, const Rect& within) {
   const int x = static_cast<int>(std::lround(p.x()));
   const int y = static_cast<int>(std::lround(p.y()));
-  return chart.weight.rect().contains(x, y) && chart.weight(x, y) > 0.0F;
+  return within.contains(x, y) && chart.weight(x, y) > 0.0F;
 }
 
 bool any_surface(const EditingChart& chart, const Rect& pixels) {
@@ -60,23 +60,23 @@ bool clip(const Rect& rect, Vec2f& a, Vec2f& b) {
   return true;
 }
 
-bool segment_meets(const EditingChart& chart, Vec2f a, Vec2f b) {
-  if (!clip(chart.weight.rect(), a, b)) return false;
+bool segment_meets(const EditingChart& chart, Vec2f a, Vec2f b, const Rect& within) {
+  if (!clip(within, a, b)) return false;
   const int steps = 1 + static_cast<int>((b - a).norm());
   for (int k = 0; k <= steps; ++k) {
     const float t = static_cast<float>(k) / static_cast<float>(steps);
-    if (on_surface(chart, a + t * (b - a))) return true;
+    if (on_surface(chart, a + t * (b - a), within)) return true;
   }
   return false;
 }
 
-bool path_meets(const EditingChart& chart, const Stroke& stroke, bool closed) {
+bool path_meets(const EditingChart& chart, const Stroke& stroke, bool closed, const Rect& within) {
   for (std::size_t i = 0; i + 1 < stroke.size(); ++i) {
-    if (segment_meets(chart, stroke[i].position, stroke[i + 1].position)) return true;
+    if (segment_meets(chart, stroke[i].position, stroke[i + 1].position, within)) return true;
   }
   const Vec2f& first = stroke.front().position;
   const Vec2f& last = stroke.back().position;
-  return on_surface(chart, last) || (closed && segment_meets(chart, last, first));
+  return on_surface(chart, last, within) || (closed && segment_meets(chart, last, first, within));
 }
 
 struct Crossing {
@@ -146,17 +146,19 @@ void check_near_view(const Edit& edit, const View& view) {
 void check_on_surface(const Edit& edit, const std::vector<Stroke>& strokes,
                       const EditingChart& chart, const Rect& region, const Extent& model) {
   const StrokeUse use = edit.operation->stroke_use();
+  const Rect all = chart.weight.rect();
+  const Rect within = edit.operation->picks() ? intersect(region, all) : all;
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const std::string field = edit.path + ".strokes[" + std::to_string(i) + "]";
     if (use == StrokeUse::Points) {
       for (std::size_t j = 0; j < strokes[i].size(); ++j) {
         const bool meets = edit.operation->picks()
-                               ? on_surface(chart, strokes[i][j].position)
+                               ? on_surface(chart, strokes[i][j].position, within)
                                : copy_meets(chart, *edit.operation, edit.strokes[i][j]);
         if (meets) continue;
         fail_off_surface(field + "[" + std::to_string(j) + "]", model);
       }
-    } else if (!path_meets(chart, strokes[i], use != StrokeUse::Path) &&
+    } else if (!path_meets(chart, strokes[i], use != StrokeUse::Path, within) &&
                !(use == StrokeUse::Inside && inside_meets(chart, strokes[i]))) {
       fail_off_surface(field, model);
     }

@@ -125,12 +125,12 @@ void add_segments(const Segments& segments, const SegmentJobOptions& options, Ma
 }
 
 MaskImage selected_mask(const RgbnView& image, const Segments& segments,
-                        const SegmentJobOptions& options) {
+                        const SegmentJobOptions& options, Border border) {
   MaskImage mask(image.slopes.width(), image.slopes.height(), 0.0F);
   MaskImage selected(mask.width(), mask.height());
   add_segments(segments, options, mask);
   for (const std::string& place : options.wands) {
-    select_alike(image, parse_place(place, mask.rect()), selected, options.wand);
+    select_alike(image, parse_place(place, mask.rect()), selected, options.wand, border);
     add(selected, mask);
   }
   for (const std::string& lasso : options.lassos) {
@@ -138,7 +138,7 @@ MaskImage selected_mask(const RgbnView& image, const Segments& segments,
     add(selected, mask);
   }
   if (!(options.feather > 0.0F)) return mask;
-  feather_mask(mask, selected, selected.rect(), {options.feather});
+  feather_mask(mask, selected, selected.rect(), {options.feather}, border);
   return selected;
 }
 
@@ -181,15 +181,16 @@ Value segment_image(const OpenImageOptions& open, const SegmentJobOptions& optio
   const OpenedImage opened = open_image(open);
   const PictureSlopes picture = slopes_of(opened.document);
   const RgbnView image{picture.slopes, opened.document.colors(), picture.validity};
+  const Border border = opened.document.border();
   Value::Object report;
   Segments segments;
   if (!options.labels.empty() || !options.picture.empty() || !options.selected.empty()) {
-    segments = segment(image, options.segments);
+    segments = segment(image, options.segments, border);
     report.emplace_back("segments", std::size_t{segments.count});
   }
   MaskImage mask;
   if (!options.mask.empty()) {
-    mask = selected_mask(image, segments, options);
+    mask = selected_mask(image, segments, options, border);
     report.emplace_back("selected_pixels", selected_pixels(mask));
   }
   Value::Array files;

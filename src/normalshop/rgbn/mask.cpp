@@ -23,12 +23,15 @@ Rect copy_mask(MaskView mask, MaskSpan target, const Rect& region) {
 /// visit(x, y, distance) with the distance from the border for all pixels of the region, positive
 /// inside; exact up to `limit`.
 template <class Visit>
-void visit_distances(MaskView mask, const Rect& region, int limit, const Visit& visit) {
-  const Rect held = intersect(grow(region, limit), mask.rect());
+void visit_distances(MaskView mask, const Rect& region, int limit, Border border,
+                     const Visit& visit) {
+  Rect held = grow(region, limit);
+  if (border != Border::Wrap) held = intersect(held, mask.rect());
   Image<std::uint8_t> inside(held.width(), held.height());
   Image<std::uint8_t> outside(held.width(), held.height());
   for_pixels(held, [&](int x, int y) {
-    const bool is_inside = mask(x, y) >= 0.5F;
+    const bool is_inside = mask(border_pixel(x, mask.width(), border).index,
+                                border_pixel(y, mask.height(), border).index) >= 0.5F;
     inside(x - held.x0, y - held.y0) = is_inside ? 1 : 0;
     outside(x - held.x0, y - held.y0) = is_inside ? 0 : 1;
   });
@@ -67,6 +70,21 @@ Rect combine_masks(MaskView mask, MaskView other, MaskSpan target, Rect region,
   return region;
 }
 
+Rect bounds(MaskView mask) {
+  Rect out;
+  for (int y = 0; y < mask.height(); ++y) {
+    const float* row = mask.row(y);
+    const auto is_set = [&](int x) { return row[x] > 0.0F; };
+    int first = 0;
+    while (first < mask.width() && !is_set(first)) ++first;
+    if (first == mask.width()) continue;
+    int last = mask.width() - 1;
+    while (!is_set(last)) --last;
+    out = unite(out, {first, y, last + 1, y + 1});
+  }
+  return out;
+}
+
 Rect invert_mask(MaskView mask, MaskSpan target, Rect region) {
   region = intersect(region, target.rect());
   if (region.empty()) return {};
@@ -74,7 +92,8 @@ Rect invert_mask(MaskView mask, MaskSpan target, Rect region) {
   return region;
 }
 
-Rect grow_mask(MaskView mask, MaskSpan target, Rect region, const GrowMaskOptions& options) {
+Rect grow_mask(MaskView mask, MaskSpan target, Rect region, const GrowMaskOptions& options,
+               Border border) {
   const float distance = options.distance;
   if (!(std::abs(distance) <= most_pixels)) {
     throw InvalidInput("grow_mask: distance must be a number from -100000 to 100000");
@@ -82,7 +101,7 @@ Rect grow_mask(MaskView mask, MaskSpan target, Rect region, const GrowMaskOption
   region = intersect(region, target.rect());
   if (region.empty()) return {};
   if (distance == 0.0F || mask.empty()) return copy_mask(mask, target, region);
-  visit_distances(mask, region, reach(options), [&](int x, int y, float from_border) {
+  visit_distances(mask, region, reach(options), border, [&](int x, int y, float from_border) {
     const float moved = std::clamp(from_border + distance + 0.5F, 0.0F, 1.0F);
     target(x, y) = distance > 0.0F ? std::max(mask(x, y), moved) : std::min(mask(x, y), moved);
   });
@@ -93,7 +112,8 @@ int reach(const GrowMaskOptions& options) {
   return static_cast<int>(std::ceil(std::abs(options.distance))) + 2;
 }
 
-Rect feather_mask(MaskView mask, MaskSpan target, Rect region, const FeatherMaskOptions& options) {
+Rect feather_mask(MaskView mask, MaskSpan target, Rect region, const FeatherMaskOptions& options,
+                  Border border) {
   const float half = 0.5F * options.width;
   if (!(options.width >= 0.0F && options.width <= most_pixels)) {
     throw InvalidInput("feather_mask: width must be a number from 0 to 100000");
@@ -101,7 +121,7 @@ Rect feather_mask(MaskView mask, MaskSpan target, Rect region, const FeatherMask
   region = intersect(region, target.rect());
   if (region.empty()) return {};
   if (half == 0.0F || mask.empty()) return copy_mask(mask, target, region);
-  visit_distances(mask, region, reach(options), [&](int x, int y, float from_border) {
+  visit_distances(mask, region, reach(options), border, [&](int x, int y, float from_border) {
     target(x, y) = smoothstep(-half, half, from_border);
   });
   return region;

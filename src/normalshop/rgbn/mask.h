@@ -4,6 +4,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "normalshop/core/border.h"
 #include "normalshop/core/image.h"
 #include "normalshop/core/options.h"
 
@@ -21,6 +22,9 @@ constexpr auto names_of(MaskOperation) {
 
 Rect combine_masks(MaskView mask, MaskView other, MaskSpan target, Rect region,
                    MaskOperation operation);
+
+/// The smallest rectangle around what is above 0.
+Rect bounds(MaskView mask);
 
 /// target = 1 - mask.
 Rect invert_mask(MaskView mask, MaskSpan target, Rect region);
@@ -40,8 +44,9 @@ struct GrowMaskOptions {
 /// is antialiased. Exact for borders along rows and columns, within half a pixel for others.
 /// Growing leaves no pixel lower and shrinking none higher than it was. `distance` in pixels, the
 /// time grows with it. target is another image than mask. Throws InvalidInput for a distance out of
-/// its range.
-Rect grow_mask(MaskView mask, MaskSpan target, Rect region, const GrowMaskOptions& options);
+/// its range. With Border::Wrap a mask goes on beyond its sides as a tile does, else it ends there.
+Rect grow_mask(MaskView mask, MaskSpan target, Rect region, const GrowMaskOptions& options,
+               Border border = Border::Clamp);
 /// Pixels read beyond the region.
 int reach(const GrowMaskOptions& options);
 
@@ -58,8 +63,9 @@ struct FeatherMaskOptions {
 /// Lets a mask fall off smoothly (3 t^2 - 2 t^3) with the Euclidean distance from its border, which
 /// runs half a pixel beside the pixels of at least 0.5: 0.5 at the border, 1 from half the width
 /// inside and 0 from half the width outside on. `width` in pixels, the time grows with it. target
-/// is another image than mask. Throws InvalidInput for a width out of its range.
-Rect feather_mask(MaskView mask, MaskSpan target, Rect region, const FeatherMaskOptions& options);
+/// is another image than mask. Throws InvalidInput for a width out of its range. `border` as above.
+Rect feather_mask(MaskView mask, MaskSpan target, Rect region, const FeatherMaskOptions& options,
+                  Border border = Border::Clamp);
 /// Pixels read beyond the region.
 int reach(const FeatherMaskOptions& options);
 

@@ -7,6 +7,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/rgbn/detail/rows.h"
+#include "normalshop/rgbn/mask.h"
 
 namespace normalshop {
 
@@ -73,20 +74,6 @@ void flood(Image<std::uint8_t>& alike, const Vec2i& seed, bool wraps, MaskSpan m
       }
     }
   }
-}
-
-Rect bounds(MaskView mask) {
-  Rect out;
-  for (int y = 0; y < mask.height(); ++y) {
-    const float* row = mask.row(y);
-    const float* end = row + mask.width();
-    const auto first = static_cast<int>(std::find(row, end, 1.0F) - row);
-    if (first == mask.width()) continue;
-    int last = mask.width() - 1;
-    while (row[last] != 1.0F) --last;
-    out = unite(out, {first, y, last + 1, y + 1});
-  }
-  return out;
 }
 
 /// Where an edge crosses a line, and which way.

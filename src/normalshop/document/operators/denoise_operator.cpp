@@ -119,7 +119,7 @@ struct DenoiseFilter {
   }
 };
 
-/// A picture's colours say where edges are; they stay as they are.
+/// Colours say where edges are; they stay as they are.
 class DenoiseOperator : public FilterOperator<DenoiseFilter> {
  public:
   using FilterOperator::FilterOperator;

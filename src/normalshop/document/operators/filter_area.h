@@ -48,11 +48,14 @@ constexpr auto filter_area_fields() {
                           "Part of the brush's width at full strength; 0 is softest"),
       field<Owner, float>(
           "feather", &Owner::feather, "length", 0.0, 1e6,
-          "Width over which the edit fades in at the border of the area, for \"view\" "
-          "where the model goes on beyond it; 0: for \"inside\" and \"view\" 4 % of "
-          "the smaller side, else 2 pixels"),
-      field<Owner, float>("coarseness", &Owner::coarseness, "1", 0.0, 1e6,
-                          "Of \"segments\": larger values give fewer, larger ones"),
+          "Width over which the edit fades in at the border, for \"view\" where the model goes on "
+          "beyond it; 0: 4 % of the smaller side of \"inside\" and \"view\". Of \"segments\" and "
+          "\"alike\" from 2 pixels to a quarter of the view; holes of half that width close. None "
+          "for \"brush\""),
+      field<Owner, float>(
+          "coarseness", &Owner::coarseness, "1", 0.0, 1e6,
+          "Of \"segments\": larger values give fewer, larger ones; none has less than "
+          "50 of the chart's pixels"),
       field<Owner, float>("color_weight", &Owner::color_weight, "1", 0.0, 1e6,
                           "Of \"segments\": how much colours count beside normals; 0: not at all"),
       field<Owner, float>("color_tolerance", &Owner::color_tolerance, "1", 0.0, 1e6,
@@ -76,7 +79,8 @@ void check_area(const FilterAreaOptions& options, const std::vector<UnitStroke>&
                 const std::string& path);
 StrokeUse area_stroke_use(const FilterAreaOptions& options);
 Extent area_extent(const FilterAreaOptions& options, const std::vector<UnitStroke>& strokes);
-/// The edit's strength per pixel, 0 to 1 (lengths in pixels). Returns where it is not 0.
+/// The edit's strength per pixel, 0 to 1 (lengths in pixels). Returns where it is not 0. `mask` is
+/// 0 before.
 Rect area_mask(const FilterAreaOptions& options, const OperatorInput& input, MaskSpan mask);
 
 /// target -= source in `region`.

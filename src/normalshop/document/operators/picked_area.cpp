@@ -13,14 +13,16 @@ namespace normalshop {
 
 namespace {
 
-constexpr float least_feather = 2.0F;  ///< pixels: no staircase
+constexpr float least_feather = 2.0F;     ///< pixels: no staircase
+constexpr float largest_feather = 0.25F;  ///< of the chart's shorter side
 
 /// The pixel there; in a tile the one that repeats there.
 Vec2i pixel_at(const Vec2f& p, const Rect& chart, Border border) {
-  const Vec2i pixel(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-  if (border != Border::Wrap) return pixel;
-  return {border_pixel(pixel.x(), chart.width(), border).index,
-          border_pixel(pixel.y(), chart.height(), border).index};
+  const auto x = static_cast<int>(std::lround(p.x()));
+  const auto y = static_cast<int>(std::lround(p.y()));
+  if (border != Border::Wrap) return {x, y};
+  return {border_pixel(x, chart.width(), border).index,
+          border_pixel(y, chart.height(), border).index};
 }
 
 /// visit(pixel) along a stroke, at least once a pixel.
@@ -57,6 +59,7 @@ void pick_segments(const FilterAreaOptions& options, const OperatorInput& input,
   select_labels(segments.labels, list, mask, mask.rect());
 }
 
+/// A point in what is picked already adds nothing: dense strokes cost no more than clicks.
 void pick_alike(const FilterAreaOptions& options, const OperatorInput& input, const RgbnView& seen,
                 MaskSpan mask) {
   WandOptions wand;
@@ -66,57 +69,42 @@ void pick_alike(const FilterAreaOptions& options, const OperatorInput& input, co
   for (const Stroke& stroke : input.strokes) {
     for (const StrokePoint& point : stroke) {
       const Vec2i pixel = pixel_at(point.position, mask.rect(), input.border);
+      if (!mask.rect().contains(pixel.x(), pixel.y()) || mask(pixel.x(), pixel.y()) > 0.0F)
+        continue;
       select_alike(seen, pixel, picked, wand, input.border);
       combine_masks(mask, picked, mask, mask.rect(), MaskOperation::Add);
     }
   }
 }
 
-/// The same falloff as elsewhere in a tile's sides: from a copy that goes on beyond them.
-void feather_tile(const MaskImage& mask, const FeatherMaskOptions& options, MaskSpan target) {
-  const int margin = reach(options);
-  MaskImage wide(mask.width() + 2 * margin, mask.height() + 2 * margin);
-  for_pixels(wide.rect(), [&](int x, int y) {
-    wide(x, y) = mask(border_pixel(x - margin, mask.width(), Border::Wrap).index,
-                      border_pixel(y - margin, mask.height(), Border::Wrap).index);
-  });
-  MaskImage soft(wide.width(), wide.height());
-  feather_mask(wide, soft, shift(mask.rect(), margin, margin), options);
-  for_pixels(mask.rect(), [&](int x, int y) { target(x, y) = soft(x + margin, y + margin); });
-}
-
+/// Feathers, and closes holes and gaps that are narrower than half the feather before: else every
+/// pixel of noise that was not picked would keep all around it from full strength.
 void soften(float feather, Border border, MaskSpan mask) {
-  MaskImage hard(mask.width(), mask.height());
-  for_pixels(hard.rect(), [&](int x, int y) { hard(x, y) = mask(x, y); });
   const auto side = static_cast<float>(std::min(mask.width(), mask.height()));
-  const FeatherMaskOptions options{std::max(least_feather, std::min(feather, side))};
-  if (border == Border::Wrap) {
-    feather_tile(hard, options, mask);
-  } else {
-    feather_mask(hard, mask, mask.rect(), options);
-  }
+  const float width = std::max(least_feather, std::min(feather, largest_feather * side));
+  const float closed = 0.25F * width;
+  MaskImage grown(mask.width(), mask.height());
+  grow_mask(mask, grown, mask.rect(), {closed}, border);
+  MaskImage shrunk(mask.width(), mask.height());
+  grow_mask(grown, shrunk, mask.rect(), {-closed}, border);
+  feather_mask(shrunk, mask, mask.rect(), {width}, border);
 }
 
-Rect bounds(MaskView mask) {
-  Rect out;
-  for (int y = 0; y < mask.height(); ++y) {
-    const float* row = mask.row(y);
-    const float* end = row + mask.width();
-    const auto is_picked = [](float value) { return value > 0.0F; };
-    const float* first = std::find_if(row, end, is_picked);
-    if (first == end) continue;
-    const float* last = end - 1;
-    while (!is_picked(*last)) --last;
-    out = unite(out, {static_cast<int>(first - row), y, static_cast<int>(last - row) + 1, y + 1});
-  }
-  return out;
+/// How far pixels count, none beyond the view: what is picked does not depend on how far the
+/// operator reads.
+MaskImage validity_in_view(const OperatorInput& input, const Rect& chart) {
+  MaskImage validity(chart.width(), chart.height(), 0.0F);
+  for_pixels(intersect(input.view, chart),
+             [&](int x, int y) { validity(x, y) = input.validity(x, y); });
+  return validity;
 }
 
 }  // namespace
 
 Rect pick_area(const FilterAreaOptions& options, const OperatorInput& input, MaskView view,
                MaskSpan mask) {
-  const RgbnView seen{input.seen, input.colors, input.validity};
+  const MaskImage validity = validity_in_view(input, mask.rect());
+  const RgbnView seen{input.seen, input.colors, validity};
   if (options.area == FilterArea::Segments) {
     pick_segments(options, input, seen, mask);
   } else {

@@ -6,7 +6,7 @@
 namespace normalshop {
 
 /// How far each pixel is picked, 0 to 1, times `view` (lengths in pixels). Returns where that is
-/// not 0.
+/// not 0. `mask` is 0 before.
 Rect pick_area(const FilterAreaOptions& options, const OperatorInput& input, MaskView view,
                MaskSpan mask);
 
