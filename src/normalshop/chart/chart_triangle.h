@@ -24,7 +24,7 @@ struct ChartTriangle {
   Mat3f points = Mat3f::Zero();    ///< pixel x, pixel y, depth
   Mat3f normals = Mat3f::Zero();   ///< base normals
   Mat3f tangents = Mat3f::Zero();  ///< zero without tangents
-  float sign = 1.0F;               ///< of the bitangent
+  float sign = 1.0F;               ///< of the bitangent in chart axes
   Mat3f node = Mat3f::Identity();  ///< Mesh::node_frame()
 
   static Mat3f differences(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
@@ -53,7 +53,7 @@ struct ChartTriangle {
     tangents = differences(tangent(0), tangent(1), tangent(2));
     const float signs =
         mesh.tangents[corner].w() + mesh.tangents[corner + 1].w() + mesh.tangents[corner + 2].w();
-    sign = signs < 0.0F ? -1.0F : 1.0F;
+    sign = (signs < 0.0F ? -1.0F : 1.0F) * view.handedness();
   }
 
   /// Map space to chart axes at weights (1, b1, b2): columns vT, vB, vN, not normalised, like

@@ -99,6 +99,7 @@ void store_farthest(const raster::TileRect& rect, const raster::Tile& tile,
 }  // namespace
 
 void Rasterizer::project(const Mesh& mesh, const ChartGrid& grid) {
+  turn_ = grid.view.handedness() < 0.0F ? -1 : 1;
   vertices_.resize(mesh.positions.size());
   const float inverse = 256.0F / grid.pixel;
   const Vec3f right = grid.view.right * inverse;
@@ -134,10 +135,10 @@ void Rasterizer::bin_front(const Mesh& mesh) {
         const Vertex& c = vertices_[index[2]];
         const Rect pixels = covered_pixels(a, b, c, {0, 0, width_, height_});
         if (pixels.empty()) continue;
-        const std::int64_t area = twice_area(a, b, c);
+        const std::int64_t area = turn_ * twice_area(a, b, c);
         const auto id = static_cast<std::uint32_t>(t);
         if (area < 0) {
-          add_to_tiles(chunk, pixels, tile_columns_, id);  // y runs down: negative faces the viewer
+          add_to_tiles(chunk, pixels, tile_columns_, id);
         } else if (area > 0) {
           chunk.back_facing.push_back(id);
         }

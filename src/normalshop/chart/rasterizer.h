@@ -47,6 +47,7 @@ class Rasterizer {
   void bin_back(const Mesh& mesh);
   void draw_tiles(const Mesh& mesh, IdBuffer& out, bool front);
 
+  std::int64_t turn_ = 1;  ///< with it, areas below 0 face the viewer: y runs down
   int width_ = 0;
   int height_ = 0;
   int tile_columns_ = 0;

@@ -52,7 +52,7 @@ bool measure(const Mesh& mesh, const StorageAtlas& storage, const View& view, co
   if (least.x() > high.x() || least.y() > high.y() || most.x() < low.x() || most.y() < low.y()) {
     return false;
   }
-  const Vec3f cross = (p[1] - p[0]).cross(p[2] - p[0]);
+  const Vec3f cross = view.handedness() * (p[1] - p[0]).cross(p[2] - p[0]);
   if (!(cross.z() > facing_cosine * cross.norm())) return false;
   const NormalMap& map = storage.sets[mesh.texture_sets[triangle]].normals;
   const Vec2f size(static_cast<float>(map.width()), static_cast<float>(map.height()));

@@ -105,6 +105,13 @@ View named_view(const Mesh& mesh, NamedView name) {
   return framing_view(mesh, directions[static_cast<std::size_t>(name)]);
 }
 
+View mirrored(const View& view, int axis, float at) {
+  View out = view;
+  for (Vec3f* v : {&out.right, &out.up, &out.direction}) (*v)[axis] = -(*v)[axis];
+  out.center[axis] = 2.0F * at - out.center[axis];
+  return out;
+}
+
 View facing_view(const Mesh& mesh, const Vec3f& point, float width, float height) {
   if (mesh.triangle_count() == 0) throw InvalidInput("the model has no triangle to face");
   if (!point.allFinite()) throw InvalidInput("view.facing must be three finite numbers");

@@ -20,6 +20,8 @@ struct View {
   /// Object-space vector in chart axes, and back.
   Vec3f to_chart(const Vec3f& v) const { return {v.dot(right), v.dot(up), v.dot(direction)}; }
   Vec3f to_object(const Vec3f& v) const { return v.x() * right + v.y() * up + v.z() * direction; }
+  /// -1 for a mirrored() view, whose axes are left-handed.
+  float handedness() const { return right.cross(up).dot(direction) < 0.0F ? -1.0F : 1.0F; }
 };
 
 /// Where the viewer stands: Front looks along -z (glTF's front faces +z), Left from -x, Top from
@@ -38,6 +40,10 @@ View make_view(const Vec3f& direction, const Vec3f& up, const Vec3f& center, flo
 View named_view(const Mesh& mesh, NamedView name);
 /// The whole mesh from any direction.
 View framing_view(const Mesh& mesh, const Vec3f& direction, const Vec3f& up = Vec3f::UnitY());
+
+/// The view of the surface's mirror image in the plane where coordinate `axis` is `at`: it shows of
+/// the surface what `view` shows of that image, letters the wrong way round.
+View mirrored(const View& view, int axis, float at);
 
 /// The view that faces the surface point nearest to `point`: along the base normal there, centred
 /// on it. Throws InvalidInput when the mesh has no triangle.

@@ -148,26 +148,27 @@ PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams,
   return pushed;
 }
 
-}  // namespace
-
-EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      StorageAtlas& storage) {
+/// An edit in one view before its push.
+struct Prepared {
+  EditingChart chart;
+  OperatorResult result;
+  bool replaces = false;  ///< its coverage counts
   EditReport report;
-  Stopwatch watch;
-  const View view = resolve(edit.view, mesh);
-  const Bounds box = bounds(mesh);
-  check_near_view(edit, view);
+};
+
+EditPlace find_place(const Edit& edit, const View& view, const Bounds& box) {
   EditPlace place{view_extent(view), model_extent(box, view), edit.operation->extent(edit.strokes)};
   if (place.extent.empty()) place.extent = place.view;
   place.extent = intersect(place.extent, widened(place.model, 1e-3F * box.diagonal()));
   if (place.extent.empty()) {
     fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), place.model);
   }
-  const float texel = texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high);
-  EditingChart chart =
-      build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
-  report.times.pull = watch.lap();
+  return place;
+}
 
+/// Runs the operator and lets go of what push does not need.
+void operate(const Edit& edit, const EditPlace& place, Prepared& prepared) {
+  EditingChart& chart = prepared.chart;
   OperatorInput input = make_input(edit, chart.grid, place);
   check_on_surface(edit, input.strokes, chart, input.region, place.model);
   Source source;
@@ -180,25 +181,80 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   input.colors = chart.albedo;
   input.base = source.base;
   input.validity = source.validity;
-  OperatorResult result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
-  const bool replaces = edit.details == DetailsRule::Ignore || !source.grazing.empty();
+  prepared.result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
+  prepared.replaces = edit.details == DetailsRule::Ignore || !source.grazing.empty();
   if (!source.grazing.empty()) {
-    replace_grazing(source.grazing, source.slopes, chart.base_normal, edit.mode, result);
+    replace_grazing(source.grazing, source.slopes, chart.base_normal, edit.mode, prepared.result);
   }
-  source = {};
-  chart.base_normal = {};  // push needs neither
+  chart.base_normal = {};
   chart.albedo = {};
-  report.times.operate = watch.lap();
+}
 
-  ChartEdit change{edit.mode, result.change, {}, result.region};
-  if (replaces) change.coverage = result.coverage;
-  if (edit.strength > 0.0F) report.pushed = push_and_fit(mesh, seams, chart, change, storage);
-  report.times.push = watch.lap();
-  report.chart_width = chart.grid.width();
-  report.chart_height = chart.grid.height();
-  report.pixel = chart.grid.pixel;
-  report.coarser_than_texels = chart.grid.pixel > 1.01F * texel;
-  return report;
+Prepared prepare(const Edit& edit, const View& view, const Mesh& mesh,
+                 const StorageAtlas& storage) {
+  Stopwatch watch;
+  const Bounds box = bounds(mesh);
+  check_near_view(edit, view);
+  const EditPlace place = find_place(edit, view, box);
+  const float texel = texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high);
+  Prepared prepared;
+  prepared.chart =
+      build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
+  EditReport& report = prepared.report;
+  const ChartGrid& grid = prepared.chart.grid;
+  report.chart_width = grid.width();
+  report.chart_height = grid.height();
+  report.pixel = grid.pixel;
+  report.coarser_than_texels = grid.pixel > 1.01F * texel;
+  report.times.pull = watch.lap();
+  operate(edit, place, prepared);
+  report.times.operate = watch.lap();
+  return prepared;
+}
+
+void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+                   Prepared& prepared, StorageAtlas& storage) {
+  Stopwatch watch;
+  ChartEdit change{edit.mode, prepared.result.change, {}, prepared.result.region};
+  if (prepared.replaces) change.coverage = prepared.result.coverage;
+  if (edit.strength > 0.0F) {
+    prepared.report.pushed = push_and_fit(mesh, seams, prepared.chart, change, storage);
+  }
+  prepared.report.times.push = watch.lap();
+}
+
+/// Both sides of a mirrored edit; the chart is that of the first.
+void add(const EditReport& other, EditReport& report) {
+  report.coarser_than_texels = report.coarser_than_texels || other.coarser_than_texels;
+  report.pushed.visited += other.pushed.visited;
+  report.pushed.changed += other.pushed.changed;
+  report.pushed.largest_change =
+      std::max(report.pushed.largest_change, other.pushed.largest_change);
+  report.times.pull += other.times.pull;
+  report.times.operate += other.times.operate;
+  report.times.push += other.times.push;
+}
+
+}  // namespace
+
+EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+                      StorageAtlas& storage) {
+  const View view = resolve(edit.view, mesh);
+  Prepared side = prepare(edit, view, mesh, storage);
+  std::optional<Prepared> other;  // before any push: both see what was there, and throw in time
+  if (edit.mirror) {
+    const View image = mirrored(view, static_cast<int>(edit.mirror->axis), edit.mirror->at);
+    try {
+      other = prepare(edit, image, mesh, storage);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(edit.path + ".mirror: on the other side, " + error.what());
+    }
+  }
+  push_prepared(edit, mesh, seams, side, storage);
+  if (!other) return side.report;
+  push_prepared(edit, mesh, seams, *other, storage);
+  add(other->report, side.report);
+  return side.report;
 }
 
 }  // namespace normalshop

@@ -38,6 +38,14 @@ struct EffectiveAngles {
   float zero = 75.0F;
 };
 
+/// A plane of symmetry: where an object-space coordinate has a value.
+enum class Axis { X, Y, Z };
+constexpr auto names_of(Axis) { return std::array<std::string_view, 3>{"x", "y", "z"}; }
+struct MirrorPlane {
+  Axis axis = Axis::X;
+  float at = 0.0F;
+};
+
 /// One recordable change: view + operator + options + strokes. No pixels.
 struct Edit {
   std::shared_ptr<const EditOperator> operation;
@@ -47,6 +55,7 @@ struct Edit {
   float strength = 1.0F;
   EffectiveAngles effective;
   std::vector<UnitStroke> strokes;
+  std::optional<MirrorPlane> mirror;  ///< makes the edit's mirror image, too
   std::string path;  ///< where it was read from, for messages: "scar.json: edits[0]"
 };
 

@@ -261,6 +261,7 @@ ImageDocument::ImageDocument(Images images) : images_(std::move(images)) {
 }
 
 EditReport ImageDocument::apply(const Edit& edit) {
+  if (edit.mirror) throw InvalidInput(edit.path + ".mirror must be left out for a picture");
   Stopwatch watch;
   const Placed placed = place(edit, images_);
   EditReport report;

@@ -102,9 +102,22 @@ std::shared_ptr<const EditOperator> read_operator(const FieldReader& reader, Ass
   return operation;
 }
 
+MirrorPlane read_mirror(const FieldReader& reader) {
+  const bool named = reader.value().text() != nullptr;
+  if (!named && reader.value().object() == nullptr) {
+    reader.fail(join_names(names_list<Axis>()) + ", or an object with \"axis\" and \"at\"");
+  }
+  if (!named) reader.only({"axis", "at"});
+  MirrorPlane plane;
+  const FieldReader axis = named ? reader : reader.required("axis");
+  plane.axis = static_cast<Axis>(axis.one_of(names_list<Axis>()));
+  if (!named && reader.has("at")) plane.at = coordinate(reader.required("at"));
+  return plane;
+}
+
 Edit read_edit(const FieldReader& reader, Assets& assets) {
   reader.only({"operator", "view", "mode", "details", "strength", "effective", "options", "strokes",
-               "comment"});
+               "mirror", "comment"});
   Edit edit;
   edit.path = reader.path();
   edit.operation = read_operator(reader, assets);
@@ -121,6 +134,7 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   }
   if (reader.has("effective")) edit.effective = read_effective(reader.required("effective"));
   if (reader.has("strokes")) edit.strokes = read_strokes(reader.required("strokes"));
+  if (reader.has("mirror")) edit.mirror = read_mirror(reader.required("mirror"));
   edit.operation->check_strokes(edit.strokes, reader.path() + ".strokes");
   return edit;
 }
@@ -191,6 +205,10 @@ Value to_value(const Recipe& recipe) {
         {"effective", Value::Object{{"full", edit.effective.full}, {"zero", edit.effective.zero}}},
         {"options", edit.operation->options()}};
     if (!edit.strokes.empty()) fields.emplace_back("strokes", strokes_value(edit.strokes));
+    if (edit.mirror) {
+      fields.emplace_back(
+          "mirror", Value::Object{{"axis", name_of(edit.mirror->axis)}, {"at", edit.mirror->at}});
+    }
     edits.emplace_back(std::move(fields));
   }
   return Value::Object{{"version", 1}, {"edits", edits}};
