@@ -171,7 +171,7 @@ void PixelTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t 
   if (mesh.tangents.empty()) return;
   const Vec4f* t = &mesh.tangents[corner];
   tangents = ChartTriangle::differences(t[0].head<3>(), t[1].head<3>(), t[2].head<3>());
-  sign = t[0].w() + t[1].w() + t[2].w() < 0.0F ? -1.0F : 1.0F;
+  sign = (t[0].w() + t[1].w() + t[2].w() < 0.0F ? -1.0F : 1.0F) * grid.view.handedness();
 }
 
 void interpolate_run(const PixelTriangle& triangle, int x, int y, int begin, int end,

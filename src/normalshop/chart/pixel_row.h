@@ -18,7 +18,7 @@ struct PixelTriangle {
   // Columns as in ChartTriangle.
   Mat3f normals = Mat3f::Zero();
   Mat3f tangents = Mat3f::Zero();
-  float sign = 1.0F;
+  float sign = 1.0F;  ///< of the bitangent in chart axes
   Vec2f uv = Vec2f::Zero();
   Vec2f uv1 = Vec2f::Zero();  ///< corner 1 - corner 0
   Vec2f uv2 = Vec2f::Zero();

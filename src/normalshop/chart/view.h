@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include <Eigen/Geometry>
+
 #include "normalshop/surface/mesh.h"
 
 namespace normalshop {
