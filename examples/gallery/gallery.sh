@@ -87,6 +87,10 @@ figure paint "$rock/normal.jpg" - 900x900 paint --azimuth 180 --tilt 40 --streng
   --brush 160 --stroke "-300,-220 0,220 300,-220"
 figure rotate "$rock/normal.jpg" - 900x900 rotate --azimuth 90 --tilt 90 --angle 25 --area inside \
   --feather 12 --stroke "-260,-200 260,-200 260,200 -260,200"
+# A point each tile; their colours count.
+figure segments "$facade/normal.jpg" - 440x440 paint --color "$facade/albedo.jpg" --area segments \
+  --coarseness 2 --azimuth 200 --tilt 35 --strength 0.8 --edges wrap --stroke "-110,63" --stroke "-46,20" \
+  --stroke "50,-22" --stroke "-14,-108" --stroke "114,106" --stroke "-78,-151" --stroke "82,-151" --stroke "146,-65"
 figure balance "$work/tilted.png" - 700x700 balance
 figure project "$work/painted.png" - 900x900 project --edges wrap
 figure warp "$rock/normal.jpg" "$rock/albedo.jpg" 900x900 warp --kind twirl --radius 320 --amount 1.2 --stroke "0,0" --edges wrap

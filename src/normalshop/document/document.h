@@ -25,7 +25,7 @@ struct EditReport {
   /// The edit covers more texels than the largest chart has pixels: the finest take an interpolated
   /// change.
   bool coarser_than_texels = false;
-  PushResult pushed;
+  PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
   EditTimes times;
 };
 
