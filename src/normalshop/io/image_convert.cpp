@@ -8,12 +8,13 @@ namespace normalshop {
 
 namespace {
 
-/// Rounding x, y and z to codes moves a length by this much at most.
+/// Rounding x, y and z to codes moves a length by half of this at most, and reading codes as if the
+/// middle one stood for 0 (or not) as much again.
 float length_step(CodeType type, const NormalConvention& convention, bool half_float) {
-  const float half_root_three = 0.5F * std::sqrt(3.0F);
-  if (type != CodeType::F32) return half_root_three * code_range(type, convention).scale;
+  const float root_three = std::sqrt(3.0F);
+  if (type != CodeType::F32) return root_three * code_range(type, convention).scale;
   const float components = convention.signed_float ? 1.0F : 2.0F;
-  return half_float ? half_root_three * components * 0x1p-11F : 1e-6F;
+  return half_float ? 0.5F * root_three * components * 0x1p-11F : 1e-6F;
 }
 
 struct Converter {
