@@ -81,7 +81,7 @@ class EdgeSorter {
 };
 
 /// For each edge whether it is the first between its nodes.
-std::vector<std::uint8_t> find_firsts(const std::vector<EdgeList::Edge>& edges,
+std::vector<std::uint8_t> find_firsts(const PixelVector<EdgeList::Edge>& edges,
                                       std::uint32_t count) {
   std::vector<std::uint32_t> starts(count + std::size_t{1}, 0);
   for (const EdgeList::Edge& edge : edges) ++starts[std::min(edge.a, edge.b)];

@@ -9,13 +9,13 @@ namespace normalshop {
 namespace {
 
 struct Numbers {
-  std::vector<std::uint32_t> of_node;
+  PixelVector<std::uint32_t> of_node;
   std::uint32_t count = 0;
 };
 
 Numbers number_sets(const SegmentForest& forest) {
   constexpr std::uint32_t none = no_label;
-  Numbers out{std::vector<std::uint32_t>(forest.count(), none), 0};
+  Numbers out{PixelVector<std::uint32_t>(forest.count(), none), 0};
   for (std::uint32_t i = 0; i < forest.count(); ++i) {
     const std::uint32_t root = forest.find_only(i);
     if (out.of_node[root] == none) out.of_node[root] = out.count++;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "normalshop/core/pixel_vector.h"
 #include "normalshop/rgbn/segment.h"
 
 /// How the graph of a segmentation holds its edges, private to this floor.
@@ -38,7 +39,7 @@ struct EdgeList {
     std::uint32_t a;
     std::uint32_t b;
   };
-  std::vector<Edge> edges;
+  PixelVector<Edge> edges;
   std::vector<std::uint32_t> starts;  ///< first edge of each code, and the end
 };
 

@@ -55,8 +55,8 @@ class SegmentForest {
   void for_edges(const EdgeList& list, const Visit& visit);
 
   float coarseness_;
-  std::vector<std::int32_t> links_;  ///< the parent; of a root, minus the number of pixels
-  std::vector<float> thresholds_;    ///< of a root: Int + coarseness / size
+  PixelVector<std::int32_t> links_;  ///< the parent; of a root, minus the number of pixels
+  PixelVector<float> thresholds_;    ///< of a root: Int + coarseness / size
 };
 
 /// Numbers the sets in the order of their first nodes and tells each pixel's set. Pixels without
