@@ -1,4 +1,5 @@
 #include "document/picture_fixture.h"
+#include "support/tile.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
@@ -15,10 +16,9 @@ SlopeImage disc_slopes(int column, int row) {
   SlopeImage slopes(picture_width, picture_height);
   for (int y = 0; y < picture_height; ++y) {
     for (int x = 0; x < picture_width; ++x) {
-      const int u =
-          (x - column + picture_width + picture_width / 2) % picture_width - picture_width / 2;
-      const int v =
-          (y - row + picture_height + picture_height / 2) % picture_height - picture_height / 2;
+      const Vec2i way = way_in_tile({column, row}, {x, y}, picture_width, picture_height);
+      const int u = way.x();
+      const int v = way.y();
       const float rough = 0.01F * static_cast<float>((u * 7 + v * 3) % 5);
       slopes(x, y) = {u * u + v * v < 256 ? 0.6F : 0.0F, rough};
     }

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "support/tile.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/for_pixels.h"
@@ -21,8 +22,9 @@ SlopeImage tile_with_disc(int column, int row) {
   SlopeImage slopes(tile_width, tile_height);
   for (int y = 0; y < tile_height; ++y) {
     for (int x = 0; x < tile_width; ++x) {
-      const int u = (x - column + tile_width + tile_width / 2) % tile_width - tile_width / 2;
-      const int v = (y - row + tile_height + tile_height / 2) % tile_height - tile_height / 2;
+      const Vec2i way = way_in_tile({column, row}, {x, y}, tile_width, tile_height);
+      const int u = way.x();
+      const int v = way.y();
       const auto noise = [&](std::uint32_t seed) {
         const auto a = static_cast<std::uint32_t>(u + tile_width);
         const auto b = static_cast<std::uint32_t>(v + tile_height);
