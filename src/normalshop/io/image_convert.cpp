@@ -8,19 +8,18 @@ namespace normalshop {
 
 namespace {
 
-/// Rounding x, y and z to codes moves a length by half of this at most, and reading codes as if the
-/// middle one stood for 0 (or not) as much again.
+/// Rounding x, y and z to codes moves a length by this much at most.
 float length_step(CodeType type, const NormalConvention& convention, bool half_float) {
-  const float root_three = std::sqrt(3.0F);
-  if (type != CodeType::F32) return root_three * code_range(type, convention).scale;
+  const float half_root_three = 0.5F * std::sqrt(3.0F);
+  if (type != CodeType::F32) return half_root_three * code_range(type, convention).scale;
   const float components = convention.signed_float ? 1.0F : 2.0F;
-  return half_float ? 0.5F * root_three * components * 0x1p-11F : 1e-6F;
+  return half_float ? half_root_three * components * 0x1p-11F : 1e-6F;
 }
 
 struct Converter {
   NormalMap& map;
-  float step;  ///< of the imported codes
-  float kept;  ///< lengths this close to 1 stay as they are
+  float unsure;  ///< lengths of imported codes may be this far from 1
+  float kept;    ///< lengths this close to 1 stay as they are
   ConvertReport report;
 
   void convert_row(int y, bool normalize) {
@@ -35,7 +34,7 @@ struct Converter {
         continue;
       }
       const float error = std::abs(vectors[x].norm() - 1.0F);
-      if (error > step) ++report.not_unit;
+      if (error > unsure) ++report.not_unit;
       if (normalize && error > kept) map.set_normal(static_cast<int>(x), y, normals[x]);
     }
   }
@@ -50,7 +49,9 @@ ConvertReport convert_image(const OpenImageOptions& input, const OpenedImage& op
   const CodeType type = map.codes().type();
   const float step = length_step(type, map.convention(), opened.half_float);
   const float written = target.type ? length_step(*target.type, map.convention(), false) : step;
-  Converter converter{map, step, std::min(step, written), {}};
+  // Codes read as if the middle one stood for 0 (or not) are off by half a code more.
+  const float unsure = type == CodeType::F32 ? step : 2.0F * step;
+  Converter converter{map, unsure, std::min(step, written), {}};
   converter.report.pixels =
       static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height());
   for (int y = 0; y < map.height(); ++y) converter.convert_row(y, normalize);
