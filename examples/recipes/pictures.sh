@@ -11,18 +11,20 @@ here=$(cd "$(dirname "$0")" && pwd)
 pictures=$here/../../docs/images/recipes
 mkdir -p "$pictures"
 
+# Runs the program; its words are shown only where it fails.
+run() {
+  "$program" "$@" > "$work/run.log" 2>&1 || { cat "$work/run.log"; exit 1; }
+}
+
 # picture NAME MODEL "FLAGS FOR THE MODEL" "FLAGS FOR BOTH RENDERINGS" ["FLAGS FOR THE EDIT"]
 picture() {
   name=$1 model=$models/$2 out=$work/$1
   [ -z "$only" ] || case $only in *" $name "*) ;; *) return 0 ;; esac
   mkdir -p "$out"
   # Flags hold no spaces; they are split on purpose.
-  "$program" edit "$model" $3 ${5:-} --recipe "$here/$name.json" -o "$out" > "$work/$name.log" 2>&1 ||
-    { cat "$work/$name.log"; exit 1; }
-  "$program" render "$model" $3 $4 --resolution 1200x1200 -o "$work/$name-before.png" > "$work/$name.log" 2>&1 ||
-    { cat "$work/$name.log"; exit 1; }
-  "$program" render "$out/$(basename "$model")" $4 --resolution 1200x1200 -o "$work/$name-after.png" >> "$work/$name.log" 2>&1 ||
-    { cat "$work/$name.log"; exit 1; }
+  run edit "$model" $3 ${5:-} --recipe "$here/$name.json" -o "$out"
+  run render "$model" $3 $4 --resolution 1200x1200 -o "$work/$name-before.png"
+  run render "$out/$(basename "$model")" $4 --resolution 1200x1200 -o "$work/$name-after.png"
   convert "$work/$name-before.png" "$work/$name-after.png" +append -filter Lanczos -resize 1200x600 \
     -strip -quality 88 "$pictures/$name.jpg"
   echo "$name: $(tr -d '\n' < "$out/report.json" |
