@@ -1,5 +1,6 @@
 #pragma once
 
+#include "normalshop/chart/edit_reach.h"
 #include "normalshop/chart/push.h"
 #include "normalshop/chart/texel_batch.h"
 
@@ -11,10 +12,9 @@ class EditSampler {
  public:
   EditSampler(const EditingChart& chart, const ChartEdit& edit);
 
-  const ChartGrid& grid() const { return chart_.grid; }
+  const EditReach& reach() const { return reach_; }
+  const ChartGrid& grid() const { return reach_.grid(); }
   EditMode mode() const { return edit_.mode; }
-  /// Can any point within this box of chart pixels be changed?
-  bool reaches(float x0, float y0, float x1, float y1) const;
   /// Fills weight, change_x, change_y and covered of the batch's points. False, and not all is
   /// filled, when nothing happens at any of them.
   bool read(TexelBatch& batch) const;
@@ -23,10 +23,8 @@ class EditSampler {
   bool acts(int x, int y) const;
   float coverage_at(float x, float y) const;
 
-  const EditingChart& chart_;
   const ChartEdit& edit_;
-  Rect region_;  ///< within the chart
-  Image<std::int32_t> blocks_;
+  EditReach reach_;
 };
 
 }  // namespace normalshop

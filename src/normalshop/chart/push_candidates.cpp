@@ -16,8 +16,8 @@ int tiles_along(int texels) { return (texels + tile_side - 1) / tile_side; }
 
 }  // namespace
 
-PushCandidates::PushCandidates(const Mesh& mesh, const EditSampler& sampler,
-                               std::uint32_t texture_set, int width, int height)
+PushCandidates::PushCandidates(const Mesh& mesh, const EditReach& reach, std::uint32_t texture_set,
+                               int width, int height)
     : mesh_(mesh),
       texture_set_(texture_set),
       width_(width),
@@ -28,17 +28,17 @@ PushCandidates::PushCandidates(const Mesh& mesh, const EditSampler& sampler,
   parallel_for(mesh.triangle_count(), 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto triangle = static_cast<std::uint32_t>(i);
-      if (!may_change(sampler, triangle)) continue;
+      if (!may_change(reach, triangle)) continue;
       triangles_[i] = 1;
       mark_tiles(triangle);
     }
   });
 }
 
-bool PushCandidates::may_change(const EditSampler& sampler, std::uint32_t triangle) const {
+bool PushCandidates::may_change(const EditReach& reach, std::uint32_t triangle) const {
   if (mesh_.texture_sets[triangle] != texture_set_) return false;
   const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-  const ChartGrid& grid = sampler.grid();
+  const ChartGrid& grid = reach.grid();
   const Vec3f& toward = grid.view.direction;
   if (mesh_.normals[corner].dot(toward) <= 0.0F && mesh_.normals[corner + 1].dot(toward) <= 0.0F &&
       mesh_.normals[corner + 2].dot(toward) <= 0.0F) {
@@ -49,7 +49,7 @@ bool PushCandidates::may_change(const EditSampler& sampler, std::uint32_t triang
   const Vec3f c = grid.project(mesh_.position(corner + 2));
   const Vec3f low = a.cwiseMin(b).cwiseMin(c);
   const Vec3f high = a.cwiseMax(b).cwiseMax(c);
-  return sampler.reaches(low.x(), low.y(), high.x(), high.y());
+  return reach.reaches(low.x(), low.y(), high.x(), high.y());
 }
 
 void PushCandidates::mark_tiles(std::uint32_t triangle) {

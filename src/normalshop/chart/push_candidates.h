@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "normalshop/chart/edit_sampler.h"
+#include "normalshop/chart/edit_reach.h"
 #include "normalshop/chart/storage.h"
 
 /// Where a push has to look, private to floor 4.
@@ -13,7 +13,7 @@ namespace normalshop {
 /// NormalMap::tile_size texels that they may lie in.
 class PushCandidates {
  public:
-  PushCandidates(const Mesh& mesh, const EditSampler& sampler, std::uint32_t texture_set, int width,
+  PushCandidates(const Mesh& mesh, const EditReach& reach, std::uint32_t texture_set, int width,
                  int height);
 
   bool contains(std::uint32_t triangle) const { return triangles_[triangle] != 0; }
@@ -21,7 +21,7 @@ class PushCandidates {
   std::vector<Rect> tiles() const;
 
  private:
-  bool may_change(const EditSampler& sampler, std::uint32_t triangle) const;
+  bool may_change(const EditReach& reach, std::uint32_t triangle) const;
   void mark_tiles(std::uint32_t triangle);
 
   const Mesh& mesh_;

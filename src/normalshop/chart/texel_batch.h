@@ -50,11 +50,12 @@ struct TexelBatch {
   alignas(64) Lane depth_dx{};
   alignas(64) Lane depth_dy{};
   alignas(64) Lane steepness{};
-  // The edit there: filled by EditSampler::read(), all 0 where nothing happens.
+  // The edit there: filled by a sampler, all 0 where nothing happens.
   alignas(64) Lane weight{};  ///< of the effective chart; 0 where the chart does not see the point
   alignas(64) Lane change_x{};  ///< change times weight
   alignas(64) Lane change_y{};
-  alignas(64) Lane covered{};  ///< coverage times weight
+  alignas(64) Lane change_z{};  ///< the third number of a colour's change
+  alignas(64) Lane covered{};   ///< coverage times weight
   // The frame that decodes the texel.
   Vectors tangent;
   Vectors bitangent;
@@ -69,8 +70,13 @@ struct TexelBatch {
   /// Does the edit do anything there? What is no number or has no unit normal does not.
   bool acts(int i) const {
     const auto k = static_cast<std::size_t>(i);
-    const float size = std::abs(change_x[k]) + std::abs(change_y[k]) + covered[k];
+    const float size =
+        std::abs(change_x[k]) + std::abs(change_y[k]) + std::abs(change_z[k]) + covered[k];
     return size > 0.0F && size < 1e18F;
+  }
+  void clear_edit(int i) {
+    const auto k = static_cast<std::size_t>(i);
+    change_x[k] = change_y[k] = change_z[k] = covered[k] = 0.0F;
   }
   void set_frame(int i, const Mat3f& frame) {
     tangent.set(i, frame.col(0));

@@ -10,13 +10,28 @@
 /// Edits of texels listed one by one, private to floor 4.
 namespace normalshop {
 
-/// A listed texel and its new normal.
+/// A listed texel and what it gets.
 struct TexelWrite {
   std::uint32_t texel;  ///< y * width + x
   float weight;         ///< of the effective chart
-  float turn;           ///< 1 - cos of the angle between before and after
-  Vec3f normal;
+  Vec3f value;          ///< the new normal, or what its colour grows by
+  float turn = 0.0F;    ///< of normals: 1 - cos of the angle between before and after
 };
+
+/// Index of a texel as TexelWrite has it.
+inline std::uint32_t texel_index(int x, int y, int width) {
+  return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) +
+         static_cast<std::uint32_t>(x);
+}
+
+/// Is a texel among the writes? They are sorted by texel.
+inline bool holds_texel(const std::vector<TexelWrite>& writes, std::uint32_t texel) {
+  if (writes.empty()) return false;
+  const auto found =
+      std::lower_bound(writes.begin(), writes.end(), texel,
+                       [](const TexelWrite& w, std::uint32_t t) { return w.texel < t; });
+  return found != writes.end() && found->texel == texel;
+}
 
 /// Is a weight larger than another by more than rounding?
 inline bool outweighs(float weight, float other) { return weight > other + 1e-3F; }

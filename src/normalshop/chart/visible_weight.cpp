@@ -146,9 +146,8 @@ namespace normalshop {
 
 HWY_EXPORT(weigh);
 
-bool read_visible_weight(const EditingChart& chart, const Image<std::int32_t>& blocks,
-                         TexelBatch& batch) {
-  return HWY_DYNAMIC_DISPATCH(weigh)(chart, blocks, batch);
+bool read_visible_weight(const EditReach& reach, TexelBatch& batch) {
+  return HWY_DYNAMIC_DISPATCH(weigh)(reach.chart(), reach.blocks(), batch);
 }
 
 }  // namespace normalshop

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
-
-#include "normalshop/chart/pull.h"
+#include "normalshop/chart/edit_reach.h"
 #include "normalshop/chart/texel_batch.h"
 
 /// Which points of a batch the chart sees, private to floor 4.
@@ -13,12 +11,8 @@ namespace normalshop {
 /// within what the surface may bend over a pixel: as much as the steeper of the plane and of the
 /// base normal at the point is steep, and a pixel more. 0 where no pixel around the point does
 /// (something nearer hides it), where the base surface is seen at a grazing angle, and in blocks of
-/// 8 x 8 pixels that `blocks` marks with 0. False when no point is of the front and in a marked
+/// pixels that the edit does not reach. False when no point is of the front and in a marked
 /// block, where all are 0.
-bool read_visible_weight(const EditingChart& chart, const Image<std::int32_t>& blocks,
-                         TexelBatch& batch);
-
-/// Side of a block.
-inline constexpr int edit_block = 8;
+bool read_visible_weight(const EditReach& reach, TexelBatch& batch);
 
 }  // namespace normalshop
