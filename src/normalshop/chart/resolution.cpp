@@ -41,7 +41,16 @@ float stretch(const Vec2f& p1, const Vec2f& p2, const Vec2f& t1, const Vec2f& t2
   return std::sqrt(e * e + h * h) + std::sqrt(f * f + g * g);
 }
 
-bool measure(const Mesh& mesh, const StorageAtlas& storage, const View& view, const Vec2f& low,
+Vec2f texels_across(const StorageSet& set, CountedTexels counted) {
+  const Vec2f normals(static_cast<float>(set.normals.width()),
+                      static_cast<float>(set.normals.height()));
+  if (counted == CountedTexels::Normals || set.albedo.empty()) return normals;
+  const RawImage& colors = set.albedo.codes();
+  return normals.cwiseMax(
+      Vec2f(static_cast<float>(colors.width()), static_cast<float>(colors.height())));
+}
+
+bool measure(const Mesh& mesh, const std::vector<Vec2f>& sizes, const View& view, const Vec2f& low,
              const Vec2f& high, std::size_t triangle, Density& out) {
   std::array<Vec3f, 3> p;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -54,8 +63,7 @@ bool measure(const Mesh& mesh, const StorageAtlas& storage, const View& view, co
   }
   const Vec3f cross = view.handedness() * (p[1] - p[0]).cross(p[2] - p[0]);
   if (!(cross.z() > facing_cosine * cross.norm())) return false;
-  const NormalMap& map = storage.sets[mesh.texture_sets[triangle]].normals;
-  const Vec2f size(static_cast<float>(map.width()), static_cast<float>(map.height()));
+  const Vec2f& size = sizes[mesh.texture_sets[triangle]];
   const auto texel = [&](std::size_t k) -> Vec2f {
     return (mesh.uvs[3 * triangle + k] - mesh.uvs[3 * triangle]).cwiseProduct(size);
   };
@@ -73,15 +81,17 @@ bool measure(const Mesh& mesh, const StorageAtlas& storage, const View& view, co
 }  // namespace
 
 float texel_pixel_size(const Mesh& mesh, const StorageAtlas& storage, const View& view,
-                       const Vec2f& low, const Vec2f& high) {
+                       const Vec2f& low, const Vec2f& high, CountedTexels counted) {
   constexpr std::size_t run = 32768;
+  std::vector<Vec2f> sizes;
+  for (const StorageSet& set : storage.sets) sizes.push_back(texels_across(set, counted));
   std::vector<std::vector<Density>> parts((mesh.triangle_count() + run - 1) / run);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {
       const std::size_t last = std::min(mesh.triangle_count(), (part + 1) * run);
       Density d{};
       for (std::size_t t = part * run; t < last; ++t) {
-        if (measure(mesh, storage, view, low, high, t, d)) parts[part].push_back(d);
+        if (measure(mesh, sizes, view, low, high, t, d)) parts[part].push_back(d);
       }
     }
   });

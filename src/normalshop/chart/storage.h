@@ -8,11 +8,13 @@
 
 namespace normalshop {
 
-/// One texture set of the storage atlas. The maps may differ in size; texels belong to `normals`.
+/// One texture set of the storage atlas. The maps may differ in size.
 struct StorageSet {
   NormalMap normals;
   ColorMap albedo;
-  TexelMap texels;
+  TexelMap texels;  ///< of `normals`
+  /// Of `albedo` where its size differs; empty until colours are pushed.
+  TexelMap albedo_texels = {};
 };
 
 /// The storage atlas: one set per entry of Mesh::texture_set_names.
