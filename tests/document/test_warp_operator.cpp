@@ -31,12 +31,12 @@ ImageDocument bump_at(const Vec2f& place, Border border = Border::Clamp) {
 }
 
 /// The middle of what is red.
-Vec2f red_place(const ImageDocument& document) {
+Vec2f red_place(const ColorImage& colors) {
   Vec2f sum(0.0F, 0.0F);
   float weight = 0.0F;
   for (int y = 0; y < picture_side; ++y) {
     for (int x = 0; x < picture_side; ++x) {
-      const float red = document.colors()(x, y).x() - 0.3F;
+      const float red = colors(x, y).x() - 0.3F;
       sum += red * Vec2f(static_cast<float>(x) - 0.5F * (picture_side - 1),
                          0.5F * (picture_side - 1) - static_cast<float>(y));
       weight += red;
@@ -61,6 +61,36 @@ Vec2f bump_place(const ImageDocument& document) {
   return sum / weight;
 }
 
+/// The square [0, 1]^2 with the picture's normals and colours; a pixel is 1 / picture_side.
+Document mesh_of(const ImageDocument& picture) {
+  RawImage codes(picture_side, picture_side, 3, CodeType::F32);
+  for (int y = 0; y < picture_side; ++y) {
+    std::copy_n(picture.colors()(0, y).data(), 3 * picture_side, codes.row<float>(y));
+  }
+  std::vector<Document::Maps> maps;
+  maps.push_back({picture.normals(), ColorMap(std::move(codes))});
+  return {plane_grid(2), std::move(maps)};
+}
+
+ColorImage colors_of(const Document& mesh) {
+  const RawImage codes = mesh.storage().sets.at(0).albedo.encode();
+  ColorImage colors(codes.width(), codes.height());
+  for (int y = 0; y < codes.height(); ++y) {
+    std::copy_n(codes.row<float>(y), 3 * codes.width(), colors(0, y).data());
+  }
+  return colors;
+}
+
+/// What GrabMovesNormalsAndColoursTogether does, on mesh_of() a picture.
+std::string grab_on_mesh(const std::string& more_options = "") {
+  const auto point = [](double x, double y) {
+    return "[" + std::to_string(x / picture_side) + ", " + std::to_string(y / picture_side) + "]";
+  };
+  return R"("operator": "warp", "view": "front", "options": {"kind": "grab", "radius": )" +
+         std::to_string(34.0 / picture_side) + more_options + R"(}, "strokes": [[)" + point(-8, 4) +
+         ", " + point(4, -4) + "]]";
+}
+
 std::string message_of(const std::string& fields) {
   try {
     bump_at({0.0F, 0.0F}).apply(edit(R"("operator": "warp", "view": "front", )" + fields));
@@ -75,8 +105,10 @@ TEST(WarpOperator, GrabMovesNormalsAndColoursTogether) {
   document.apply(
       edit(R"("operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 34},
                          "strokes": [[[-8, 4], [4, -4]]])"));
-  EXPECT_LT((red_place(document) - Vec2f(4.0F, -4.0F)).norm(), 1.0F) << red_place(document);
-  EXPECT_LT((bump_place(document) - red_place(document)).norm(), 1.0F) << bump_place(document);
+  EXPECT_LT((red_place(document.colors()) - Vec2f(4.0F, -4.0F)).norm(), 1.0F)
+      << red_place(document.colors());
+  EXPECT_LT((bump_place(document) - red_place(document.colors())).norm(), 1.0F)
+      << bump_place(document);
 }
 
 TEST(WarpOperator, BeyondTheBrushNothingChanges) {
@@ -102,7 +134,8 @@ TEST(WarpOperator, PairsOfStrokesMoveWhatIsBetween) {
   document.apply(edit(R"("operator": "warp", "view": "front", "strokes": [
       [[-40, -40], [40, -40], [40, 40], [-40, 40]],
       [[-8, -8], [-8, 8]], [[8, -8], [8, 8]]])"));
-  EXPECT_LT((red_place(document) - Vec2f(8.0F, 0.0F)).norm(), 1.0F) << red_place(document);
+  EXPECT_LT((red_place(document.colors()) - Vec2f(8.0F, 0.0F)).norm(), 1.0F)
+      << red_place(document.colors());
   EXPECT_LT((bump_place(document) - Vec2f(8.0F, 0.0F)).norm(), 1.0F) << bump_place(document);
   EXPECT_FALSE(document.normals().edited(3, 3));
 }
@@ -124,6 +157,55 @@ TEST(WarpOperator, MovesTheDetailsOfAMesh) {
       "options": {"kind": "pinch", "radius": 0.3}, "strokes": [[[0, 0]]])"));
   EXPECT_GT(report.pushed.changed, 500U);
   EXPECT_FALSE(map_of(mesh).edited(2, 2));
+}
+
+TEST(WarpOperator, ColoursOfAMeshMoveAsThoseOfAPicture) {
+  ImageDocument picture = bump_at({-8.0F, 4.0F});
+  Document mesh = mesh_of(picture);
+  const EditReport moved = picture.apply(edit(
+      R"("operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 34},
+         "strokes": [[[-8, 4], [4, -4]]])"));
+  const EditReport report = mesh.apply(edit(grab_on_mesh()));
+  const ColorImage colors = colors_of(mesh);
+  EXPECT_LT((red_place(colors) - red_place(picture.colors())).norm(), 0.1F) << red_place(colors);
+  for (int y = 0; y < picture_side; ++y) {
+    for (int x = 0; x < picture_side; ++x) {
+      ASSERT_LT((colors(x, y) - picture.colors()(x, y)).cwiseAbs().maxCoeff(), 0.02F)
+          << x << " " << y;
+    }
+  }
+  EXPECT_GT(report.colors_changed, 100U);
+  EXPECT_GT(moved.colors_changed, 100U);
+  EXPECT_LT(degrees_between(map_of(mesh).normal(50, 52), picture.normals().normal(50, 52)), 1.0F);
+}
+
+TEST(WarpOperator, ColoursStayWhereTheyAreOnRequest) {
+  const ImageDocument picture = bump_at({-8.0F, 4.0F});
+  Document mesh = mesh_of(picture);
+  const EditReport report = mesh.apply(edit(grab_on_mesh(R"(, "colors": "stay")")));
+  EXPECT_GT(report.pushed.changed, 100U);
+  EXPECT_EQ(report.colors_changed, 0U);
+  EXPECT_FALSE(mesh.storage().sets[0].albedo.has_edits());
+}
+
+TEST(WarpOperator, NeitherMovesWithoutStrength) {
+  Document mesh = mesh_of(bump_at({-8.0F, 4.0F}));
+  const EditReport report = mesh.apply(edit(grab_on_mesh() + R"(, "strength": 0)"));
+  EXPECT_EQ(report.pushed.changed + report.colors_changed, 0U);
+  EXPECT_FALSE(mesh.storage().sets[0].albedo.has_edits());
+}
+
+/// A column of red in the middle, pinched on one side and its mirror image.
+TEST(WarpOperator, MirroredEditsMoveColoursOnBothSides) {
+  Document mesh = mesh_of(bump_at({-20.0F, 4.0F}));
+  mesh.apply(edit(R"("operator": "warp", "view": "front",
+      "options": {"kind": "grab", "radius": 0.2}, "strokes": [[[0.28, 0.04], [0.2, 0.04]]],
+      "mirror": {"axis": "x", "at": 0.5})"));
+  // The bump at -20 is on the other side of the stroke: its image moved it by 8 pixels to the
+  // middle.
+  const Vec2f place = red_place(colors_of(mesh));
+  EXPECT_GT(place.x(), -17.0F) << place;
+  EXPECT_NEAR(place.y(), 4.0F, 0.5F);
 }
 
 TEST(WarpOperator, SaysWhatItNeeds) {

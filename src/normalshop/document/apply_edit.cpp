@@ -5,8 +5,10 @@
 
 #include "normalshop/chart/effective.h"
 #include "normalshop/chart/extend.h"
+#include "normalshop/chart/push_colors.h"
 #include "normalshop/chart/resolution.h"
 #include "normalshop/core/error.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/grazing.h"
@@ -148,10 +150,26 @@ PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams,
   return pushed;
 }
 
+/// What the operator adds to the colours of a chart.
+struct ColorResult {
+  ColorImage change;  ///< empty: nothing
+  Rect region;
+};
+
+ColorResult run_colors(const Edit& edit, const OperatorInput& input, ColorView before) {
+  ColorResult result{ColorImage(before.width(), before.height()), {}};
+  result.region = edit.operation->run_colors(input, result.change);
+  for_pixels(result.region, [&](int x, int y) {
+    result.change(x, y) = edit.strength * (result.change(x, y) - before(x, y));
+  });
+  return result;
+}
+
 /// An edit in one view before its push.
 struct Prepared {
   EditingChart chart;
   OperatorResult result;
+  ColorResult colors;
   bool replaces = false;  ///< its coverage counts
   EditReport report;
 };
@@ -186,6 +204,9 @@ void operate(const Edit& edit, const EditPlace& place, Prepared& prepared) {
   if (!source.grazing.empty()) {
     replace_grazing(source.grazing, source.slopes, chart.base_normal, edit.mode, prepared.result);
   }
+  if (edit.operation->moves_colors() && !chart.albedo.empty()) {
+    prepared.colors = run_colors(edit, input, chart.albedo);
+  }
   chart.base_normal = {};
   chart.albedo = {};
 }
@@ -196,7 +217,10 @@ Prepared prepare(const Edit& edit, const View& view, const Mesh& mesh,
   const Bounds box = bounds(mesh);
   check_near_view(edit, view);
   const EditPlace place = find_place(edit, view, box);
-  const float texel = texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high);
+  const CountedTexels counted =
+      edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
+  const float texel =
+      texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high, counted);
   Prepared prepared;
   prepared.chart =
       build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
@@ -219,6 +243,11 @@ void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge>
   if (prepared.replaces) change.coverage = prepared.result.coverage;
   if (edit.strength > 0.0F) {
     prepared.report.pushed = push_and_fit(mesh, seams, prepared.chart, change, storage);
+    const ColorResult& colors = prepared.colors;
+    if (!colors.change.empty()) {
+      prepared.report.colors_changed =
+          push_colors(mesh, prepared.chart, {colors.change, colors.region}, storage).changed;
+    }
   }
   prepared.report.times.push = watch.lap();
 }
@@ -230,6 +259,7 @@ void add(const EditReport& other, EditReport& report) {
   report.pushed.changed += other.pushed.changed;
   report.pushed.largest_change =
       std::max(report.pushed.largest_change, other.pushed.largest_change);
+  report.colors_changed += other.colors_changed;
   report.times.pull += other.times.pull;
   report.times.operate += other.times.operate;
   report.times.push += other.times.push;

@@ -26,6 +26,7 @@ struct EditReport {
   /// change.
   bool coarser_than_texels = false;
   PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
+  std::size_t colors_changed = 0;  ///< texels (of a picture: pixels) of the colours, likewise
   EditTimes times;
 };
 

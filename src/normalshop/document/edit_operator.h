@@ -93,8 +93,7 @@ class EditOperator {
   virtual float reach(float /*pixel*/) const { return 0.0F; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.
   virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
-  /// An operator that moves_colors() writes what they become, and returns where. Only pictures ask
-  /// for it.
+  /// An operator that moves_colors() writes what they become, and returns where.
   virtual Rect run_colors(const OperatorInput&, ColorSpan) const { return {}; }
 };
 

@@ -223,17 +223,22 @@ ImageView<T> part_of(const Image<T>& image, const Rect& window) {
   return {image.row(window.y0) + window.x0, window.width(), window.height(), image.width()};
 }
 
-/// Colours move by `strength` and the weight towards what the operator makes of them.
-void apply_colors(const Edit& edit, const OperatorInput& input, MaskView weight, const Rect& window,
-                  ColorImage& colors) {
+/// Colours move by `strength` and the weight towards what the operator makes of them. Returns how
+/// many pixels changed.
+std::size_t apply_colors(const Edit& edit, const OperatorInput& input, MaskView weight,
+                         const Rect& window, ColorImage& colors) {
   ColorImage result(window.width(), window.height());
   const Rect region = edit.operation->run_colors(input, result);
+  std::size_t changed = 0;
   for (int y = region.y0; y < region.y1; ++y) {
     for (int x = region.x0; x < region.x1; ++x) {
       Vec3f& color = colors(window.x0 + x, window.y0 + y);
+      const Vec3f before = color;
       color += (edit.strength * weight(x, y)) * (result(x, y) - color);
+      if (color != before) ++changed;
     }
   }
+  return changed;
 }
 
 void check_sizes(int width, int height, const NormalMap& normals, const char* what) {
@@ -300,7 +305,7 @@ EditReport ImageDocument::apply(const Edit& edit) {
   if (edit.strength > 0.0F) {
     const bool covers = edit.details == DetailsRule::Ignore;
     if (!input.colors.empty() && edit.operation->moves_colors())
-      apply_colors(edit, input, weight, placed.window, images_.colors);
+      report.colors_changed = apply_colors(edit, input, weight, placed.window, images_.colors);
     report.pushed = push_window(result, weight, covers, placed.window, images_.normals);
   }
   report.times.push = watch.lap();

@@ -18,12 +18,16 @@ constexpr auto names_of(WarpKind) {
   return std::array<std::string_view, 5>{"sketch", "push", "grab", "pinch", "twirl"};
 }
 
+enum class WarpColors { Move, Stay };
+constexpr auto names_of(WarpColors) { return std::array<std::string_view, 2>{"move", "stay"}; }
+
 struct WarpEditOptions {
   WarpKind kind = WarpKind::Sketch;
   float radius = 0.0F;
   float amount = 1.0F;
   WarpHeights heights = WarpHeights::Keep;
   OnFold on_fold = OnFold::Limit;
+  WarpColors colors = WarpColors::Move;
 
   static constexpr auto fields() {
     using Own = WarpEditOptions;
@@ -40,7 +44,8 @@ struct WarpEditOptions {
         field("heights", &Own::heights,
               "Whether heights keep or grow where the picture is enlarged; keep flattens there"),
         field("on_fold", &Own::on_fold,
-              "Whether a brush is limited or refused where the picture would fold over")};
+              "Whether a brush is limited or refused where the picture would fold over"),
+        field("colors", &Own::colors, "Whether colours move along or stay where they are")};
   }
 };
 
@@ -105,7 +110,7 @@ class WarpOperator : public EditOperator {
   std::string_view name() const override { return "warp"; }
   Value options() const override { return options_value(options_); }
   bool reads() const override { return true; }
-  bool moves_colors() const override { return true; }
+  bool moves_colors() const override { return options_.colors == WarpColors::Move; }
   bool repeats_itself() const override { return true; }
   StrokeUse stroke_use() const override {
     return options_.kind == WarpKind::Sketch ? StrokeUse::Inside : StrokeUse::Path;
@@ -165,7 +170,7 @@ class WarpOperator : public EditOperator {
 }  // namespace
 
 OperatorType warp_operator() {
-  return {"warp", "Moves details, and a picture's colours with them",
+  return {"warp", "Moves details, and the colours with them",
           "Of \"sketch\": an outline outside of which nothing moves, then pairs of strokes, from "
           "where and to where; a pair that ends where it begins is one of outlines. Of brushes: "
           "their ways or places",
