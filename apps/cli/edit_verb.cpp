@@ -39,11 +39,12 @@ void print_summary(std::span<const Edit> log, std::span<const EditReport> report
                    std::span<const std::filesystem::path> files) {
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const EditReport& e = reports[i];
-    std::printf(
-        "edit %zu (%s): %zu texels changed, largest change %.1f degrees, chart %d x %d, %.0f ms\n",
-        i, std::string(log[i].operation->name()).c_str(), e.pushed.changed,
-        static_cast<double>(e.pushed.largest_change), e.chart_width, e.chart_height,
-        1e3 * (e.times.pull + e.times.operate + e.times.push));
+    std::printf("edit %zu (%s): %zu texels changed, largest change %.1f degrees, ", i,
+                std::string(log[i].operation->name()).c_str(), e.pushed.changed,
+                static_cast<double>(e.pushed.largest_change));
+    if (e.colors_changed > 0) std::printf("%zu colours, ", e.colors_changed);
+    std::printf("chart %d x %d, %.0f ms\n", e.chart_width, e.chart_height,
+                1e3 * (e.times.pull + e.times.operate + e.times.push));
   }
   for (const auto& file : files) std::printf("wrote %s\n", file.string().c_str());
 }

@@ -295,6 +295,81 @@ TEST(EditJob, ReportsFilesWithTheirFolders) {
   EXPECT_NE(read_file(folder / "out/report.json").find("\"maps/n.png\""), std::string::npos);
 }
 
+/// A red disc in the middle of grey, alpha included.
+RawImage red_disc(int size) {
+  RawImage codes(size, size, 4, CodeType::U8);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const bool inside = std::hypot(x - size / 2, y - size / 2) < 0.1 * size;
+      auto* code = codes.row<std::uint8_t>(y) + static_cast<std::ptrdiff_t>(4 * x);
+      code[0] = inside ? 220 : 120;
+      code[1] = code[2] = 120;
+      code[3] = 77;
+    }
+  }
+  return codes;
+}
+
+const char* const grab_right =
+    R"({"operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 0.4},
+        "strokes": [[[0, 0], [0.15, 0]]]})";
+
+TEST(EditJob, ColoursThatMoveAreWritten) {
+  const TempFolder folder;
+  write_image(folder / "n.png", waves(64, 64, CodeType::U8));
+  write_image(folder / "c.png", red_disc(128));
+  OpenOptions options;
+  options.model = write_model_file(folder, test::plane_grid(1), "n.png");
+  options.albedos = {(folder / "c.png").string()};
+  const EditJob job = run_edit_job(options, recipe(grab_right), folder / "out", {});
+  const RawImage moved = read_image(folder / "out/map_color.png");
+  const RawImage before = red_disc(128);
+  ASSERT_EQ(moved.channels(), 4);
+  ASSERT_EQ(moved.width(), 128);
+  EXPECT_GT(moved.code(64 + 16, 64, 0), 200.0F);
+  EXPECT_LT(moved.code(64 - 10, 64, 0), 135.0F);
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      ASSERT_EQ(moved.code(x, y, 3), 77.0F);
+      if (std::hypot(x - 64, y - 64) > 80) {
+        ASSERT_EQ(moved.code(x, y, 0), before.code(x, y, 0));
+      }
+    }
+  }
+  // The written model shows them, though the one that was read names no colour map.
+  const Model back = read_model(folder / "out/model.gltf");
+  ASSERT_TRUE(back.texture_sets[0].albedo.has_value());
+  EXPECT_EQ(back.texture_sets[0].albedo->path, folder / "out/map_color.png");
+  EXPECT_GT(job.edits[0].colors_changed, 500U);
+  EXPECT_NE(read_file(folder / "out/report.json").find("\"colors_changed\""), std::string::npos);
+}
+
+TEST(EditJob, ColoursThatStayAreNotWritten) {
+  const TempFolder folder;
+  write_image(folder / "n.png", waves(64, 64, CodeType::U8));
+  write_image(folder / "c.png", red_disc(64));
+  OpenOptions options;
+  options.model = write_model_file(folder, test::plane_grid(1), "n.png");
+  options.albedos = {(folder / "c.png").string()};
+  run_edit_job(options, recipe(pen(R"("front")", "[[[-0.2, 0], [0.2, 0]]]", 0.1)), folder / "out",
+               {});
+  EXPECT_FALSE(fs::exists(folder / "out/map_color.png"));
+}
+
+TEST(EditJob, ColoursAreNotWrittenOverThoseTheyCameFrom) {
+  const TempFolder folder;
+  fs::create_directories(folder / "out");
+  write_image(folder / "n.png", waves(64, 64, CodeType::U8));
+  write_image(folder / "out/map_color.png", red_disc(64));
+  const std::string before = read_file(folder / "out/map_color.png");
+  OpenOptions options;
+  options.model = write_model_file(folder, test::plane_grid(1), "n.png");
+  options.albedos = {(folder / "out/map_color.png").string()};
+  EXPECT_THROW(run_edit_job(options, recipe(grab_right), folder / "out", {}), InvalidInput);
+  EXPECT_EQ(read_file(folder / "out/map_color.png"), before);
+  EXPECT_FALSE(fs::exists(folder / "out/map_normal.png"));
+}
+
 TEST(EditJob, DoesNotDependOnThreads) {
   const TempFolder folder;
   write_image(folder / "waves.png", waves(256, 256, CodeType::U8));

@@ -19,7 +19,7 @@ using test::textured;
 using Json = GltfBuilder::Json;
 
 /// Writes the builder's model and reads it back as JSON.
-Json written_json(const GltfBuilder& gltf, const TempFolder& folder, const NormalMapReference& map,
+Json written_json(const GltfBuilder& gltf, const TempFolder& folder, const MapReferences& map,
                   const ModelReadOptions& options = {}) {
   write_file(folder / "in.gltf", gltf.text());
   const Model model = read_model(folder / "in.gltf", options);
@@ -57,6 +57,55 @@ TEST(GltfWriter, GivesAMaterialToTrianglesWithout) {
   EXPECT_EQ(out["meshes"][0]["primitives"][0]["material"], 0);
   EXPECT_EQ(out["materials"][0]["normalTexture"]["index"], 0);
   EXPECT_EQ(out["images"][0]["uri"], "maps/new.png");
+}
+
+/// Three materials of one normal map: two with the set's colours, one with its own.
+TEST(GltfWriter, NewColoursComeToTheMaterialsThatShowedThem) {
+  const TempFolder folder;
+  GltfBuilder gltf;
+  for (int i = 0; i < 3; ++i) gltf.square()["material"] = i;
+  for (const char* name : {"n.png", "c.png", "other.png"}) {
+    gltf.json["images"].push_back({{"uri", name}});
+    write_file(folder / name, std::string_view("x"));
+  }
+  gltf.json["samplers"] = {{{"wrapS", 33071}}};
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}, {"sampler", 0}}, {{"source", 2}}};
+  for (const int texture : {1, 2, 1}) {
+    Json material = textured("color", texture);
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.25;
+    material["normalTexture"] = {{"index", 0}};
+    gltf.json["materials"].push_back(material);
+  }
+  const Json out = written_json(gltf, folder, {"", false, "new color.png"});
+  const auto image_of = [&](const Json& info) {
+    const Json& texture = out["textures"][info["index"].get<std::size_t>()];
+    return out["images"][texture["source"].get<std::size_t>()]["uri"].get<std::string>();
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& pbr = out["materials"][i]["pbrMetallicRoughness"];
+    EXPECT_EQ(image_of(pbr["baseColorTexture"]), i == 1 ? "other.png" : "new%20color.png");
+    EXPECT_EQ(pbr["roughnessFactor"], 0.25);
+    EXPECT_EQ(image_of(out["materials"][i]["normalTexture"]), "n.png");
+  }
+  const Json& first = out["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  EXPECT_EQ(out["textures"][first["index"].get<std::size_t>()]["sampler"], 0);
+}
+
+TEST(GltfWriter, NewColoursOfOlderMaterialsStayInTheirExtension) {
+  const TempFolder folder;
+  GltfBuilder gltf;
+  gltf.square()["material"] = 0;
+  write_file(folder / "c.png", std::string_view("x"));
+  gltf.json["images"] = {{{"uri", "c.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  const char* const older = "KHR_materials_pbrSpecularGlossiness";
+  gltf.json["materials"] = {{{"extensions", {{older, {{"diffuseTexture", {{"index", 0}}}}}}}}};
+  const Json out = written_json(gltf, folder, {"", false, "new.png"});
+  const Json& material = out["materials"][0];
+  EXPECT_EQ(material["extensions"][older]["diffuseTexture"]["index"], 1);
+  EXPECT_FALSE(material.contains("pbrMetallicRoughness"));
+  EXPECT_FALSE(material.contains("normalTexture"));
+  EXPECT_EQ(out["images"][1]["uri"], "new.png");
 }
 
 TEST(GltfWriter, FlipsEveryUvOnceAndItsLimits) {

@@ -216,7 +216,7 @@ class ObjWriterText : public ObjWithMaterials {
     }
     write_file(folder_ / "in/x.obj", std::string_view(object));
     model_ = read_model(folder_ / "in/x.obj", options);
-    std::map<std::size_t, NormalMapReference> maps;
+    std::map<std::size_t, MapReferences> maps;
     for (std::size_t i = 0; i < model_.texture_sets.size(); ++i) {
       maps[i] = {"set" + std::to_string(i) + ".png"};
     }
@@ -294,6 +294,16 @@ TEST_F(ObjWithMaterials, FlippedVIsWrittenFlipped) {
   const Model model = read_model(folder_ / "in/a.obj", {.flip_v = true});
   write_model(model, folder_ / "out/b.obj", {{0, {"n.png"}}});
   EXPECT_EQ(read_model(folder_ / "out/b.obj").mesh.uvs, model.mesh.uvs);
+}
+
+TEST_F(ObjWithMaterials, NewColoursTakeThePlaceOfTheOld) {
+  const Model model = read_model(folder_ / "in/a.obj");
+  write_model(model, folder_ / "out/b.obj", {{1, {"", false, "two_color.png"}}});
+  EXPECT_EQ(read_file(folder_ / "out/b.mtl"),
+            "# lib\nnewmtl one\nKd 0.5 0.25 1\nnorm maps/n.png\n\nnewmtl two\r\n"
+            "bump -bm 2 maps/h.png\r\nmap_Kd two_color.png\nnewmtl three\nmap_Bump maps/n.png\n");
+  const Model back = read_model(folder_ / "out/b.obj");
+  EXPECT_EQ(back.texture_sets[1].albedo->path, folder_ / "out/two_color.png");
 }
 
 TEST(ObjLibrary, MissingOnesAreNoted) {

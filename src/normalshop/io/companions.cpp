@@ -21,10 +21,12 @@ fs::path folder_of(const fs::path& file) {
 }  // namespace
 
 Companions::Companions(const ModelSource& source, const fs::path& model_path,
-                       const std::map<std::size_t, NormalMapReference>& normal_maps)
+                       const std::map<std::size_t, MapReferences>& maps)
     : source_folder_(source.folder), folder_(folder_of(model_path)) {
-  for (const auto& [set, reference] : normal_maps) {
-    reserved_.push_back((folder_ / reference.file).lexically_normal());
+  for (const auto& [set, reference] : maps) {
+    for (const std::string& file : {reference.normal, reference.color}) {
+      if (!file.empty()) reserved_.push_back((folder_ / file).lexically_normal());
+    }
   }
   reserved_.push_back(model_path.lexically_normal());
 }

@@ -104,6 +104,7 @@ Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports
     out.push_back(Value::Object{{"operator", log[i].operation->name()},
                                 {"texels_changed", e.pushed.changed},
                                 {"largest_change_degrees", e.pushed.largest_change},
+                                {"colors_changed", e.colors_changed},
                                 {"chart", Value::Array{e.chart_width, e.chart_height}},
                                 {"pixel", e.pixel},
                                 {"coarser_than_texels", e.coarser_than_texels},

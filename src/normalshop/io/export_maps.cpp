@@ -49,41 +49,78 @@ void note_for_viewers(const std::string& name, CodeType type, const NormalConven
 /// The map that an edit starts from stays as it is.
 void check_not_input(const OpenedDocument& opened, const std::filesystem::path& target) {
   for (const OpenedSet& set : opened.sets) {
-    std::error_code error;
-    if (set.normal_map_path.empty()) continue;
-    if (!std::filesystem::equivalent(set.normal_map_path, target, error)) continue;
-    throw InvalidInput(target.string() +
-                       ": this normal map is an input of the edit; choose another output folder");
+    for (const auto& input : {set.normal_map_path, set.albedo_path}) {
+      std::error_code error;
+      if (input.empty() || !std::filesystem::equivalent(input, target, error)) continue;
+      throw InvalidInput(target.string() +
+                         ": this map is an input of the edit; choose another output folder");
+    }
   }
 }
 
-std::vector<std::filesystem::path> write_maps(const OpenedDocument& opened,
-                                              const StagedFolder& staged,
-                                              const ExportOptions& options,
-                                              std::map<std::size_t, NormalMapReference>& references,
-                                              std::vector<std::string>& notes,
-                                              const Progress& progress) {
-  std::vector<std::filesystem::path> files;
-  for (std::size_t i = 0; i < opened.sets.size(); ++i) {
-    const OpenedSet& set = opened.sets[i];
-    const NormalMap& map = opened.document.storage().sets[i].normals;
-    // A flat map that was only made to be edited adds nothing.
-    if (set.normal_map.empty() && !map.has_edits()) continue;
-    const CodeType type = options.type.value_or(set.type);
-    const std::string name = map_name(opened, i, type, options.preset);
-    check_not_input(opened, staged.folder() / name);
-    progress.at(0.0, "encoding maps");
-    const RawImage codes = export_map(opened, i, options);
-    progress.at(0.5, "writing maps");
-    write_image(staged.path() / name, codes,
-                {.half_float = set.half_float && !options.type && name.ends_with(".exr")});
-    files.push_back(staged.path() / name);
-    const NormalConvention convention = target_convention(map.convention(), options.preset);
-    references[i] = {name, convention.scale != opened.model.texture_sets[i].normal_scale};
-    if (extension_of(opened.model.path) != ".obj") note_for_viewers(name, type, convention, notes);
+/// Writes what an export needs, map by map.
+class MapWriter {
+ public:
+  MapWriter(const OpenedDocument& opened, const StagedFolder& staged, const ExportOptions& options,
+            std::vector<std::string>& notes, const Progress& progress)
+      : opened_(opened), staged_(staged), options_(options), notes_(notes), progress_(progress) {}
+
+  void write() {
+    for (std::size_t i = 0; i < opened_.sets.size(); ++i) {
+      write_normals(i);
+      write_colors(i);
+    }
   }
-  return files;
-}
+
+  std::vector<std::filesystem::path> files;
+  std::map<std::size_t, MapReferences> references;
+
+ private:
+  void write_normals(std::size_t i) {
+    const OpenedSet& set = opened_.sets[i];
+    const NormalMap& map = opened_.document.storage().sets[i].normals;
+    // A flat map that was only made to be edited adds nothing.
+    if (set.normal_map.empty() && !map.has_edits()) return;
+    const CodeType type = options_.type.value_or(set.type);
+    const std::string name = map_name(opened_, i, type, options_.preset);
+    progress_.at(0.0, "encoding maps");
+    check_not_input(opened_, staged_.folder() / name);
+    put(name, export_map(opened_, i, options_),
+        {.half_float = set.half_float && !options_.type && name.ends_with(".exr")});
+    const NormalConvention convention = target_convention(map.convention(), options_.preset);
+    references[i].normal = name;
+    references[i].scale_applied = convention.scale != opened_.model.texture_sets[i].normal_scale;
+    if (for_viewers()) note_for_viewers(name, type, convention, notes_);
+  }
+
+  /// Colours that no edit moved stay where they are.
+  void write_colors(std::size_t i) {
+    const ColorMap& map = opened_.document.storage().sets[i].albedo;
+    if (!map.has_edits()) return;
+    const RawImage codes = map.encode();
+    const bool floats = codes.type() == CodeType::F32;
+    const std::string name =
+        opened_.model.texture_sets[i].name + (floats ? "_color.exr" : "_color.png");
+    check_not_input(opened_, staged_.folder() / name);
+    put(name, codes, {});
+    references[i].color = name;
+    if (floats && for_viewers()) notes_.push_back(name + ": glTF viewers read only PNG and JPEG");
+  }
+
+  void put(const std::string& name, const RawImage& codes, const ImageWriteOptions& how) {
+    progress_.at(0.5, "writing maps");
+    write_image(staged_.path() / name, codes, how);
+    files.push_back(staged_.path() / name);
+  }
+
+  bool for_viewers() const { return extension_of(opened_.model.path) != ".obj"; }
+
+  const OpenedDocument& opened_;
+  const StagedFolder& staged_;
+  const ExportOptions& options_;
+  std::vector<std::string>& notes_;
+  const Progress& progress_;
+};
 
 }  // namespace
 
@@ -112,11 +149,12 @@ std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
                                                    const Progress& progress) {
   std::vector<std::filesystem::path> files;
   staged.write([&] {
-    std::map<std::size_t, NormalMapReference> references;
-    files = write_maps(opened, staged, options, references, notes, progress);
+    MapWriter maps(opened, staged, options, notes, progress);
+    maps.write();
+    files = std::move(maps.files);
     progress.at(0.9, "writing the model");
     const WrittenModel written =
-        write_model(opened.model, staged.path() / opened.model.path.filename(), references);
+        write_model(opened.model, staged.path() / opened.model.path.filename(), maps.references);
     files.insert(files.end(), written.files.begin(), written.files.end());
     notes.insert(notes.end(), written.notes.begin(), written.notes.end());
   });

@@ -191,11 +191,14 @@ std::size_t MaterialTable::make(int material) {
        : albedo ? "a:" + identity(albedo->image)
                 : "material:" + std::to_string(material)) +
       key_of(uv);
+  const std::string albedo_key = albedo ? identity(albedo->image) + key_of(albedo->uv) : "";
   const auto known = std::find(keys_.begin(), keys_.end(), key);
   if (known != keys_.end()) {
-    const auto set = static_cast<std::size_t>(known - keys_.begin());
-    model_.texture_sets[set].materials.push_back(material);
-    return set;
+    const auto index = static_cast<std::size_t>(known - keys_.begin());
+    TextureSet& set = model_.texture_sets[index];
+    set.materials.push_back(material);
+    if (set.albedo && albedo_keys_[index] == albedo_key) set.albedo_materials.push_back(material);
+    return index;
   }
   TextureSet set;
   set.materials = {material};
@@ -207,12 +210,14 @@ std::size_t MaterialTable::make(int material) {
   if (normal) set.normal_map = source_of(*normal);
   const bool same_uv = albedo && key_of(albedo->uv) == key_of(uv);
   if (albedo && same_uv) set.albedo = source_of(*albedo);
+  if (set.albedo) set.albedo_materials = {material};
   if (albedo && !same_uv) {
     note("the colour of the texture set '" + set.name + "' has other UVs than its normal map, so " +
          "it is not shown");
   }
   model_.texture_sets.push_back(std::move(set));
   keys_.push_back(key);
+  albedo_keys_.push_back(albedo_key);
   return keys_.size() - 1;
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 
 #include "normalshop/core/error.h"
@@ -13,6 +14,8 @@ namespace normalshop {
 namespace {
 
 using namespace gltf;
+
+constexpr const char* older_material = "KHR_materials_pbrSpecularGlossiness";
 
 /// Appends to the list `key` of `json`, which may be absent.
 std::size_t append(Json& json, const char* key, Json value) {
@@ -34,11 +37,8 @@ void flip_component(char* at, T top) {
 class Writer {
  public:
   Writer(const Model& model, const std::filesystem::path& path,
-         const std::map<std::size_t, NormalMapReference>& normal_maps)
-      : model_(model),
-        path_(path),
-        normal_maps_(normal_maps),
-        companions_(*model.source, path, normal_maps) {
+         const std::map<std::size_t, MapReferences>& maps)
+      : model_(model), path_(path), maps_(maps), companions_(*model.source, path, maps) {
     file_.name = model.path.string();
     file_.folder = model.source->folder;
     file_.binary = model.source->format == ModelFormat::Glb;
@@ -50,7 +50,7 @@ class Writer {
   WrittenModel write() {
     if (model_.source->flip_v) flip_uvs();
     erase_tangents();
-    for (const auto& [set, reference] : normal_maps_) set_normal_map(set, reference);
+    for (const auto& [set, references] : maps_) set_maps(set, references);
     place_buffers();
     place_images();
     write_file(path_, file_.binary ? binary() : text());
@@ -61,23 +61,70 @@ class Writer {
  private:
   void note(const std::string& sentence) { companions_.result.notes.push_back(sentence); }
 
-  void set_normal_map(std::size_t set, const NormalMapReference& reference) {
-    Json image = Json::object();
-    image["uri"] = percent_encoded(reference.file);
-    const std::size_t image_index = append(file_.json, "images", std::move(image));
-    for (const int material : model_.texture_sets[set].materials) {
+  void set_maps(std::size_t set, const MapReferences& references) {
+    const TextureSet& textures = model_.texture_sets[set];
+    const std::vector<int>& colored = textures.albedo_materials;
+    const auto normal = add_image(references.normal);
+    const auto color = add_image(references.color);
+    for (const int material : textures.materials) {
       const std::size_t index =
           material >= 0 ? static_cast<std::size_t>(material) : add_material(set);
       Json& json = file_.json["materials"][index];
-      Json info = json.contains("normalTexture") ? json["normalTexture"] : like_albedo(json);
-      Json texture = Json::object();
-      const Json* sampler = sampler_of(info);
-      if (sampler != nullptr) texture["sampler"] = *sampler;
-      texture["source"] = image_index;
-      info["index"] = append(file_.json, "textures", std::move(texture));
-      if (reference.scale_applied) info.erase("scale");
-      json["normalTexture"] = std::move(info);
+      if (normal) set_normal_map(json, *normal, references.scale_applied);
+      const bool shows = std::find(colored.begin(), colored.end(), material) != colored.end();
+      if (color && shows) set_color_map(json, *color);
     }
+  }
+
+  std::optional<std::size_t> add_image(const std::string& name) {
+    if (name.empty()) return std::nullopt;
+    Json image = Json::object();
+    image["uri"] = percent_encoded(name);
+    return append(file_.json, "images", std::move(image));
+  }
+
+  /// A texture of that image, otherwise as the one that `info` names.
+  void set_texture(Json& info, std::size_t image) {
+    Json texture = Json::object();
+    const Json* sampler = sampler_of(info);
+    if (sampler != nullptr) texture["sampler"] = *sampler;
+    texture["source"] = image;
+    info["index"] = append(file_.json, "textures", std::move(texture));
+  }
+
+  void set_normal_map(Json& material, std::size_t image, bool scale_applied) {
+    Json info =
+        material.contains("normalTexture") ? material["normalTexture"] : like_albedo(material);
+    set_texture(info, image);
+    if (scale_applied) info.erase("scale");
+    material["normalTexture"] = std::move(info);
+  }
+
+  /// A new colour texture has the UVs that the normal texture has.
+  void set_color_map(Json& material, std::size_t image) {
+    if (older_color(material)) {
+      set_texture(material["extensions"][older_material]["diffuseTexture"], image);
+      return;
+    }
+    Json& pbr = material["pbrMetallicRoughness"];
+    if (!pbr.is_object()) pbr = Json::object();
+    Json info = Json::object();
+    if (pbr.contains("baseColorTexture")) {
+      info = pbr["baseColorTexture"];
+    } else if (material.contains("normalTexture")) {
+      info = material["normalTexture"];
+      info.erase("scale");
+    }
+    set_texture(info, image);
+    pbr["baseColorTexture"] = std::move(info);
+  }
+
+  /// Does the material have its colours in the extension that came before glTF's own?
+  bool older_color(const Json& material) const {
+    const Json& pbr = object_at(file_, material, "pbrMetallicRoughness");
+    const Json& extensions = object_at(file_, material, "extensions");
+    return !pbr.contains("baseColorTexture") &&
+           object_at(file_, extensions, older_material).contains("diffuseTexture");
   }
 
   const Json* sampler_of(const Json& info) const {
@@ -92,10 +139,8 @@ class Writer {
   Json like_albedo(const Json& material) const {
     const Json& pbr = object_at(file_, material, "pbrMetallicRoughness");
     const Json& extensions = object_at(file_, material, "extensions");
-    const Json& older = object_at(file_, extensions, "KHR_materials_pbrSpecularGlossiness");
-    if (pbr.contains("baseColorTexture")) return pbr["baseColorTexture"];
-    if (older.contains("diffuseTexture")) return older["diffuseTexture"];
-    return Json::object();
+    if (older_color(material)) return extensions[older_material]["diffuseTexture"];
+    return pbr.contains("baseColorTexture") ? pbr["baseColorTexture"] : Json::object();
   }
 
   /// For triangles without a material.
@@ -253,8 +298,9 @@ class Writer {
       const std::string uri = string_at(image, "uri");
       if (uri.empty() || is_data_uri(uri) || has_scheme(uri)) continue;
       const std::string reference = percent_decoded(uri);
-      const bool is_new = std::any_of(normal_maps_.begin(), normal_maps_.end(),
-                                      [&](const auto& m) { return m.second.file == reference; });
+      const bool is_new = std::any_of(maps_.begin(), maps_.end(), [&](const auto& m) {
+        return m.second.normal == reference || m.second.color == reference;
+      });
       if (is_new) continue;
       const std::string placed = companions_.copy(reference);
       if (placed != reference) image["uri"] = percent_encoded(placed);
@@ -303,7 +349,7 @@ class Writer {
 
   const Model& model_;
   const std::filesystem::path& path_;
-  const std::map<std::size_t, NormalMapReference>& normal_maps_;
+  const std::map<std::size_t, MapReferences>& maps_;
   Companions companions_;
   File file_;
   std::vector<bool> modified_;
@@ -312,8 +358,8 @@ class Writer {
 }  // namespace
 
 WrittenModel write_gltf(const Model& model, const std::filesystem::path& path,
-                        const std::map<std::size_t, NormalMapReference>& normal_maps) {
-  return Writer(model, path, normal_maps).write();
+                        const std::map<std::size_t, MapReferences>& maps) {
+  return Writer(model, path, maps).write();
 }
 
 }  // namespace normalshop

@@ -65,7 +65,7 @@ Model read_model(const fs::path& path, const ModelReadOptions& options) {
 }
 
 WrittenModel write_model(const Model& model, const fs::path& path,
-                         const std::map<std::size_t, NormalMapReference>& normal_maps) {
+                         const std::map<std::size_t, MapReferences>& maps) {
   if (!model.source) throw InvalidInput("'" + path.string() + "': the model came from no file");
   const ModelFormat format = model.source->format;
   const std::string wanted = format == ModelFormat::Obj   ? ".obj"
@@ -75,14 +75,13 @@ WrittenModel write_model(const Model& model, const fs::path& path,
     throw InvalidInput("cannot write '" + path.string() + "': the model is written back as " +
                        wanted + ", the format it came in");
   }
-  for (const auto& [set, reference] : normal_maps) {
-    if (set >= model.texture_sets.size() || reference.file.empty()) {
+  for (const auto& [set, reference] : maps) {
+    if (set >= model.texture_sets.size() || (reference.normal.empty() && reference.color.empty())) {
       throw InvalidInput("cannot write '" + path.string() + "': there is no texture set " +
                          std::to_string(set) + " with a map of that name");
     }
   }
-  return format == ModelFormat::Obj ? write_obj(model, path, normal_maps)
-                                    : write_gltf(model, path, normal_maps);
+  return format == ModelFormat::Obj ? write_obj(model, path, maps) : write_gltf(model, path, maps);
 }
 
 }  // namespace normalshop

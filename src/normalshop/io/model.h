@@ -31,6 +31,7 @@ struct TextureSet {
   std::optional<MapSource> albedo;
   Vec3f albedo_factor = Vec3f::Ones();  ///< linear RGB, multiplies the albedo
   std::vector<int> materials;           ///< of the file; -1 stands for "no material"
+  std::vector<int> albedo_materials;    ///< those of them that show `albedo`
 };
 
 struct ModelSource;
@@ -69,10 +70,12 @@ Model parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
 Model parse_obj(std::span<const std::byte> bytes, const std::filesystem::path& path,
                 const ModelReadOptions& options = {});
 
-/// A texture set's new normal map, as the written model refers to it.
-struct NormalMapReference {
-  std::string file;            ///< path relative to the written model, "/" between folders
-  bool scale_applied = false;  ///< the map holds normal_scale already: the model's becomes 1
+/// A texture set's new maps, as the written model refers to them: paths relative to it, "/" between
+/// folders. Where one is empty the model keeps what it has.
+struct MapReferences {
+  std::string normal;
+  bool scale_applied = false;  ///< the normal map holds normal_scale already: the model's becomes 1
+  std::string color = {};      ///< for the set's albedo_materials
 };
 
 struct WrittenModel {
@@ -80,13 +83,13 @@ struct WrittenModel {
   std::vector<std::string> notes;
 };
 
-/// Writes the model with new normal maps. Everything else stays as the file has it: nodes, meshes,
+/// Writes the model with new maps. Everything else stays as the file has it: nodes, meshes,
 /// vertex order, faces, materials, extras; only tangents go that were not used. Buffers, materials
-/// and textures that the model refers to are copied beside it, except over files in `normal_maps`,
-/// which the caller writes. A model read with flip_v is written with v flipped in its UVs, so that
-/// it shows right elsewhere; its maps are not flipped. The extension must be the source's. Throws
+/// and textures that the model refers to are copied beside it, except over files in `maps`, which
+/// the caller writes. A model read with flip_v is written with v flipped in its UVs, so that it
+/// shows right elsewhere; its maps are not flipped. The extension must be the source's. Throws
 /// InvalidInput or IoError.
 WrittenModel write_model(const Model& model, const std::filesystem::path& path,
-                         const std::map<std::size_t, NormalMapReference>& normal_maps);
+                         const std::map<std::size_t, MapReferences>& maps);
 
 }  // namespace normalshop

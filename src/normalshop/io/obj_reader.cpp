@@ -297,9 +297,13 @@ class ObjReader {
       const auto known = std::find(keys.begin(), keys.end(), key);
       set_of_material[i] = static_cast<std::uint32_t>(known - keys.begin());
       if (known != keys.end()) {
-        model_.texture_sets[set_of_material[i]].materials.push_back(set.materials[0]);
+        TextureSet& other = model_.texture_sets[set_of_material[i]];
+        other.materials.push_back(set.materials[0]);
+        const bool same = set.albedo && other.albedo && set.albedo->path == other.albedo->path;
+        if (same) other.albedo_materials.push_back(set.materials[0]);
         continue;
       }
+      if (set.albedo) set.albedo_materials = set.materials;
       keys.push_back(key);
       set.name = file_safe_name(set.name, model_.texture_sets);
       model_.mesh.texture_set_names.push_back(set.name);

@@ -22,17 +22,18 @@ namespace {
 class ObjWriter {
  public:
   ObjWriter(const Model& model, const fs::path& path,
-            const std::map<std::size_t, NormalMapReference>& normal_maps)
-      : model_(model),
-        source_(*model.source),
-        path_(path),
-        companions_(source_, path, normal_maps) {
-    for (const auto& [set, reference] : normal_maps) {
-      for (const int material : model.texture_sets[set].materials) {
-        if (material < 0) unnamed_ = unused_name(model.texture_sets[set].name);
-        normal_of_[material < 0 ? unnamed_
-                                : source_.material_names[static_cast<std::size_t>(material)]] =
-            reference.file;
+            const std::map<std::size_t, MapReferences>& maps)
+      : model_(model), source_(*model.source), path_(path), companions_(source_, path, maps) {
+    for (const auto& [set, references] : maps) {
+      const TextureSet& textures = model.texture_sets[set];
+      for (const int material : textures.materials) {
+        if (material < 0) unnamed_ = unused_name(textures.name);
+        const auto& colored = textures.albedo_materials;
+        MapReferences own = references;
+        if (std::find(colored.begin(), colored.end(), material) == colored.end()) own.color = "";
+        maps_of_[material < 0 ? unnamed_
+                              : source_.material_names[static_cast<std::size_t>(material)]] =
+            std::move(own);
       }
     }
   }
@@ -129,7 +130,7 @@ class ObjWriter {
     return out.insert(static_cast<std::size_t>(u.data() + u.size() - words.data()), " " + text);
   }
 
-  /// All libraries in one, `norm` of the edited materials replaced.
+  /// All libraries in one, the maps of the edited materials replaced.
   std::string library_text() {
     std::string out;
     std::set<std::string> written;
@@ -146,13 +147,12 @@ class ObjWriter {
       append_library(text, renamed, out, written);
     }
     if (!out.empty() && out.back() != '\n') out += '\n';
-    for (const auto& [name, file] : normal_of_) {
+    for (const auto& [name, references] : maps_of_) {
       if (written.contains(name)) continue;
       out += "newmtl ";
       out += name;
-      out += "\nKd 0.8 0.8 0.8\nnorm ";
-      out += file;
-      out += '\n';
+      out += "\nKd 0.8 0.8 0.8\n";
+      append_maps(references, out);
     }
     return out;
   }
@@ -168,16 +168,21 @@ class ObjWriter {
     }
   }
 
+  static void append_maps(const MapReferences& references, std::string& out) {
+    if (!references.normal.empty()) out += "norm " + references.normal + "\n";
+    if (!references.color.empty()) out += "map_Kd " + references.color + "\n";
+  }
+
   using Renamed = std::map<std::string, std::string>;
 
   void append_library(const std::string& text, const Renamed& renamed, std::string& out,
                       std::set<std::string>& written) {
     std::string material;
     const auto finish = [&] {
-      const auto normal = normal_of_.find(material);
-      if (normal == normal_of_.end() || !written.insert(material).second) return;
+      const auto maps = maps_of_.find(material);
+      if (maps == maps_of_.end() || !written.insert(material).second) return;
       if (!out.empty() && out.back() != '\n') out += '\n';
-      out += "norm " + normal->second + "\n";
+      append_maps(maps->second, out);
     };
     for_each_raw_line(text, [&](std::string_view line) {
       std::string_view rest = line;
@@ -186,13 +191,18 @@ class ObjWriter {
         finish();
         material = std::string(trimmed(rest.substr(0, rest.find_first_of("\r\n"))));
       }
-      if (normal_of_.contains(material) && replaces(material, key)) return;
+      if (replaces(material, key)) return;
       out += is_texture(key) ? with_new_name(line, renamed) : std::string(line);
     });
     finish();
   }
 
+  /// Does one of the new maps take this line's place?
   bool replaces(const std::string& material, std::string_view key) const {
+    const auto maps = maps_of_.find(material);
+    if (maps == maps_of_.end()) return false;
+    if (key == "map_Kd") return !maps->second.color.empty();
+    if (maps->second.normal.empty()) return false;
     if (key == "norm") return true;
     if (key != "bump" && key != "map_bump" && key != "map_Bump") return false;
     // A height map stays; a bump map that was read as normal map goes.
@@ -260,15 +270,15 @@ class ObjWriter {
   const ModelSource& source_;
   const fs::path& path_;
   Companions companions_;
-  std::map<std::string, std::string> normal_of_;  ///< by material name
+  std::map<std::string, MapReferences> maps_of_;  ///< by material name
   std::string unnamed_;                           ///< name for faces without material
 };
 
 }  // namespace
 
 WrittenModel write_obj(const Model& model, const fs::path& path,
-                       const std::map<std::size_t, NormalMapReference>& normal_maps) {
-  return ObjWriter(model, path, normal_maps).write();
+                       const std::map<std::size_t, MapReferences>& maps) {
+  return ObjWriter(model, path, maps).write();
 }
 
 }  // namespace normalshop

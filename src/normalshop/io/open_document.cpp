@@ -227,7 +227,10 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
                              " is missing; shown without colour");
       albedo.reset();
     }
+    // What the user gives is for all.
+    if (albedos[i]) opened.model.texture_sets[i].albedo_materials = set.materials;
     OpenedSet info;
+    if (albedo) info.albedo_path = albedo->path;
     maps.push_back(open_maps(set, choose(normals[i], set.normal_map), albedo, options, opened, info,
                              progress));
     opened.sets.push_back(std::move(info));

@@ -27,6 +27,7 @@ struct OpenOptions {
 struct OpenedSet {
   std::string normal_map;  ///< file, or how it is embedded; empty: none, the map is flat
   std::filesystem::path normal_map_path;  ///< empty unless it is a file of its own
+  std::filesystem::path albedo_path;      ///< likewise
   CodeType type = CodeType::U8;           ///< of the imported codes
   bool tiff = false;
   bool half_float = false;  ///< F32 codes that were 16-bit floats

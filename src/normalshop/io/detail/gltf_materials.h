@@ -59,7 +59,8 @@ class MaterialTable {
   Model& model_;
   std::vector<int> materials_;  ///< parallel to sets_
   std::vector<std::size_t> sets_;
-  std::vector<std::string> keys_;  ///< by texture set
+  std::vector<std::string> keys_;         ///< by texture set
+  std::vector<std::string> albedo_keys_;  ///< likewise
 };
 
 }  // namespace normalshop::gltf

@@ -42,7 +42,7 @@ void fill_normals(Mesh& mesh);
 class Companions {
  public:
   Companions(const ModelSource& source, const std::filesystem::path& model_path,
-             const std::map<std::size_t, NormalMapReference>& normal_maps);
+             const std::map<std::size_t, MapReferences>& maps);
   /// Copies `reference` (a path relative to the source's folder) and returns how the written model
   /// refers to it: the same, or its bare file name (numbered where another file has it) where it
   /// leads out of the folder.
@@ -66,8 +66,8 @@ class Companions {
 };
 
 WrittenModel write_gltf(const Model& model, const std::filesystem::path& path,
-                        const std::map<std::size_t, NormalMapReference>& normal_maps);
+                        const std::map<std::size_t, MapReferences>& maps);
 WrittenModel write_obj(const Model& model, const std::filesystem::path& path,
-                       const std::map<std::size_t, NormalMapReference>& normal_maps);
+                       const std::map<std::size_t, MapReferences>& maps);
 
 }  // namespace normalshop
