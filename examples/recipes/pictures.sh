@@ -16,14 +16,15 @@ run() {
   "$program" "$@" > "$work/run.log" 2>&1 || { cat "$work/run.log"; exit 1; }
 }
 
-# picture NAME MODEL "FLAGS FOR THE MODEL" "FLAGS FOR BOTH RENDERINGS" ["FLAGS FOR THE EDIT"]
+# picture NAME MODEL "FLAGS FOR THE MODEL" "FLAGS FOR BOTH RENDERINGS" ["FLAGS FOR THE EDIT"
+#   ["FLAGS FOR THE RENDERING BEFORE"]]
 picture() {
   name=$1 model=$models/$2 out=$work/$1
   [ -z "$only" ] || case $only in *" $name "*) ;; *) return 0 ;; esac
   mkdir -p "$out"
   # Flags hold no spaces; they are split on purpose.
   run edit "$model" $3 ${5:-} --recipe "$here/$name.json" -o "$out"
-  run render "$model" $3 $4 --resolution 1200x1200 -o "$work/$name-before.png"
+  run render "$model" $3 $4 ${6:-} --resolution 1200x1200 -o "$work/$name-before.png"
   run render "$out/$(basename "$model")" $4 --resolution 1200x1200 -o "$work/$name-after.png"
   convert "$work/$name-before.png" "$work/$name-after.png" +append -filter Lanczos -resize 1200x600 \
     -strip -quality 88 "$pictures/$name.jpg"
@@ -42,6 +43,7 @@ picture raised $head_model "$head_flags" "$skin --view=-1,0.3,1 --width 3 --cent
 picture bumps $head_model "$head_flags" "$skin --view=0.35,0,1 --width 4.6 --center 0,1.5,0"
 picture bricks $head_model "$head_flags" "$skin --view=0.35,0,1 --width 4.6 --center 0,1.5,0"
 picture smooth $head_model "$head_flags" "$skin --width 2.6 --center 0,1.3,0 --light 0.5,0.5,1"
+picture brows $head_model "$head_flags" "--width 3 --center 0,2,0" "$skin" "$skin"
 picture waterbottle khr_waterbottle/WaterBottle.gltf "" "--view=-0.3,0.3,1 --width 0.17 --center 0,0.048,0"
 picture tea_set polyhaven_tea_set_01/tea_set_01_1k.gltf "--size 4096" \
   "--view=-0.1,1,0.6 --width 0.4 --center -0.23,0.02,-0.07 --light=-0.7,0.5,0.7"
