@@ -16,6 +16,7 @@ struct TexelWrite {
   float weight;         ///< of the effective chart
   Vec3f value;          ///< the new normal, or what its colour grows by
   float turn = 0.0F;    ///< of normals: 1 - cos of the angle between before and after
+  float facing = 0.0F;  ///< of normals: cosine between the base normal and the viewing direction
 };
 
 /// Index of a texel as TexelWrite has it.

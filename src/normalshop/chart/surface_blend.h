@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "normalshop/chart/push.h"
+
+namespace normalshop {
+
+/// One edit of a surface that no single view shows: what every view of it would do to a texel, as a
+/// mean that is continuous over the surface (a partition of unity). A view counts by its weight
+/// there times a power of the cosine between base normal and viewing direction, so that the one
+/// that faces the surface decides, and where views take turns the mean goes smoothly from one to
+/// the other. Where all weights together are below 1 the edit fades out with them.
+///
+/// The views see the storage as it is before the edit: it must not change until write().
+class SurfaceBlend {
+ public:
+  explicit SurfaceBlend(const StorageAtlas& storage);
+
+  /// What push() would do from this view. Deterministic for any number of threads, as push() is.
+  void add(const Mesh& mesh, const EditingChart& chart, const ChartEdit& edit,
+           const StorageAtlas& storage);
+  /// Stores the mean. `visited` counts texels once for each view that reached them.
+  PushResult write(StorageAtlas& storage) const;
+
+ private:
+  static constexpr int side = NormalMap::tile_size;
+  /// Sums over the views.
+  struct Tile {
+    std::array<Vec3f, side * side> turned;   ///< share * (unit normal after - before)
+    std::array<float, side * side> share{};  ///< weight * power of the cosine
+    std::array<float, side * side> weight{};
+    Tile() { turned.fill(Vec3f::Zero()); }
+  };
+  struct Target;
+  using Tiles = std::vector<std::unique_ptr<Tile>>;
+
+  std::vector<Tiles> sets_;
+  std::size_t visited_ = 0;
+};
+
+}  // namespace normalshop

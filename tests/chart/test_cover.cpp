@@ -1,0 +1,139 @@
+#include <cmath>
+
+#include "chart_fixtures.h"
+#include "support/meshes.h"
+#include <gtest/gtest.h>
+
+#include "normalshop/chart/cover.h"
+#include "normalshop/chart/surface_blend.h"
+#include "normalshop/core/error.h"
+#include "normalshop/core/parallel.h"
+
+namespace normalshop::test {
+namespace {
+
+/// The same change of slopes from each view that covers the mesh.
+PushResult blend_constant(const Mesh& mesh, StorageAtlas& storage, const CoverOptions& options,
+                          const Vec2f& change) {
+  SurfaceBlend blend(storage);
+  for (const CoverView& view : cover_surface(mesh, options)) {
+    const float pixel = std::max(view.view.width, view.view.height) / 250.0F;
+    EditingChart chart = pull(mesh, storage, make_grid(view.view, pixel, view.low, view.high));
+    compute_weight(chart, options.effective);
+    const EditImages images = constant_edit(chart, change);
+    blend.add(mesh, chart, images.edit(EditMode::Base), storage);
+  }
+  return blend.write(storage);
+}
+
+/// The best cosine that any view has at each covered texel; 0 where none sees it.
+std::vector<float> best_cosines(const Mesh& mesh, const StorageAtlas& storage,
+                                const std::vector<CoverView>& views) {
+  std::vector<float> best;
+  for_texels(storage, [&](int, int, const SurfacePoint& p) {
+    float most = 0.0F;
+    for (const CoverView& view : views) {
+      most = std::max(most, base_normal_at(mesh, p).dot(view.view.direction));
+    }
+    best.push_back(most);
+  });
+  return best;
+}
+
+TEST(Cover, shows_all_of_a_sphere_squarely) {
+  const Mesh mesh = smooth_sphere(48, 24);
+  const StorageAtlas storage = storage_of(mesh, flat_normal_map(64, 64, CodeType::U8));
+  const std::vector<CoverView> views = cover_surface(mesh, {});
+  EXPECT_GE(views.size(), 8U);
+  EXPECT_LE(views.size(), 32U);
+  for (const float cosine : best_cosines(mesh, storage, views)) EXPECT_GT(cosine, 0.8F);
+}
+
+TEST(Cover, needs_one_view_for_a_plane_and_takes_no_more_than_asked_for) {
+  const std::vector<CoverView> one = cover_surface(plane_grid(2), {});
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_GT(one[0].view.direction.z(), 0.99F);
+  CoverOptions few;
+  few.views = 4;
+  EXPECT_EQ(cover_surface(smooth_sphere(32, 16), few).size(), 4U);
+}
+
+TEST(Cover, is_the_same_for_one_thread) {
+  const Mesh mesh = cube(3);
+  const std::vector<CoverView> many = cover_surface(mesh, {});
+  const ThreadLimit limit(1);
+  const std::vector<CoverView> one = cover_surface(mesh, {});
+  ASSERT_EQ(one.size(), many.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].view.direction, many[i].view.direction);
+    EXPECT_EQ(one[i].low, many[i].low);
+    EXPECT_EQ(one[i].high, many[i].high);
+  }
+}
+
+TEST(Cover, refuses_a_model_without_surface) {
+  EXPECT_THROW(cover_surface(Mesh{}, {}), InvalidInput);
+  Mesh flat = plane_grid(1);
+  for (Vec3f& p : flat.positions) p = Vec3f::Ones();
+  EXPECT_THROW(cover_surface(flat, {}), InvalidInput);
+}
+
+TEST(SurfaceBlend, reaches_every_texel_of_a_sphere) {
+  const Mesh mesh = smooth_sphere(48, 24);
+  StorageAtlas storage = storage_of(mesh, flat_normal_map(128, 128, CodeType::U8));
+  const PushResult result = blend_constant(mesh, storage, {}, {0.3F, 0.1F});
+  std::size_t covered = 0;
+  std::size_t missed = 0;
+  for_texels(storage, [&](int x, int y, const SurfacePoint&) {
+    ++covered;
+    missed += storage.sets[0].normals.edited(x, y) ? 0 : 1;
+  });
+  EXPECT_EQ(missed, 0U);
+  EXPECT_GE(result.changed, covered);
+  EXPECT_GT(result.visited, 2 * covered);
+}
+
+/// Every view takes all details away; their mean does, too, at every texel and in its gutter.
+TEST(SurfaceBlend, of_equal_results_is_that_result) {
+  const Mesh mesh = smooth_sphere(64, 32);
+  StorageAtlas storage = storage_of(mesh, noise_map(128, CodeType::U16));
+  SurfaceBlend blend(storage);
+  CoverOptions options;
+  for (const CoverView& view : cover_surface(mesh, options)) {
+    EditingChart chart = pull(mesh, storage, make_grid(view.view, 0.008F, view.low, view.high));
+    compute_weight(chart, options.effective);
+    const EditImages images = constant_edit(chart, {0, 0}, 1.0F);
+    blend.add(mesh, chart, images.edit(EditMode::Base), storage);
+  }
+  blend.write(storage);
+  float worst = 0.0F;
+  for_texels(storage, [&](int x, int y, const SurfacePoint& p) {
+    worst = std::max(worst, static_cast<float>(angle_degrees(stored_normal(mesh, storage, x, y, p),
+                                                             base_normal_at(mesh, p))));
+  });
+  EXPECT_LT(worst, 0.05F);
+}
+
+TEST(SurfaceBlend, of_no_change_stores_nothing) {
+  const Mesh mesh = smooth_sphere(32, 16);
+  StorageAtlas storage = storage_of(mesh, noise_map(64, CodeType::U8));
+  EXPECT_EQ(blend_constant(mesh, storage, {}, {0, 0}).changed, 0U);
+  EXPECT_FALSE(storage.sets[0].normals.has_edits());
+}
+
+TEST(SurfaceBlend, is_the_same_for_one_thread) {
+  const Mesh mesh = smooth_sphere(32, 16);
+  StorageAtlas many = storage_of(mesh, noise_map(96, CodeType::U16));
+  StorageAtlas one = many;
+  blend_constant(mesh, many, {}, {0.2F, -0.1F});
+  const ThreadLimit limit(1);
+  blend_constant(mesh, one, {}, {0.2F, -0.1F});
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      ASSERT_EQ(one.sets[0].normals.normal(x, y), many.sets[0].normals.normal(x, y));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace normalshop::test
