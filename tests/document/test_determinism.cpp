@@ -145,9 +145,9 @@ TEST(Determinism, InstructionSetsDoNotMatter) {
 TEST(Determinism, CodesAreThoseOfOtherMachines) {
   const Hashes mesh{0x972902ac95280dc3, 0x80fd04081f9012ec, 0xec3c1fb5ed0aba1a, 0x80c7c780061ad746,
                     0x419f6b6fd4aea665, 0x5ad99de13412b04a, 0x3c40019d526c6811, 0x857d535952995bfd,
-                    0xedb6e63f495e516b, 0x94818adcd4dd8d1b, 0x9016d7f786b6b8b,  0xc08c44d36196e2c5,
-                    0xeabff86d4deadb8f, 0x958800a0793c7b9d, 0xe81661097ba7faa4, 0xeb7cc090c3b83ad0,
-                    0x37f89f089d27a197, 0xef8d12695038d941};
+                    0xedb6e63f495e516b, 0x7469e978e0491576, 0x9016d7f786b6b8b,  0x7e2ac571d2eb456d,
+                    0x1ea31c37bbedcba6, 0x958800a0793c7b9d, 0xe81661097ba7faa4, 0x1e0b3f070531fa75,
+                    0xcef9ebc767bdca24, 0x4da865f0033867be};
   const Hashes picture{0x3b23505710a9c534, 0xff7282e11bacb3ee, 0xb58da5fc8b930ded,
                        0xb2929e9ad8877b3c, 0x613ff1e3f6d4253f, 0x2753c4ad89b427c5,
                        0x4e83676727da885c, 0x463fffba58885836, 0x5184f3856751cf38,

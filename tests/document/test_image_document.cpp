@@ -267,7 +267,8 @@ TEST(ImageDocument, FarPixelsDoNotMatter) {
 TEST(ImageDocument, RefusesWhatIsNotInThePicture) {
   ImageDocument document = picture_of(flat(32, 32));
   EXPECT_EQ(message_of(document, edit(dot + R"(, "view": "back", "strokes": [[[0, 0]]])")),
-            "r.json: edits[0].view must look at a picture from the front: \"front\", or an object "
+            "r.json: edits[0].view must look at a picture from the front: \"front\" or "
+            "\"surface\", or an object "
             "with \"facing\", or with the \"direction\" [0, 0, 1] and the \"up\" [0, 1, 0]");
   EXPECT_NE(message_of(document, edit(dot + R"(, "view": {"direction": [1, 0, 1]},
                                              "strokes": [[[0, 0]]])"))

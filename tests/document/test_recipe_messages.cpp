@@ -56,8 +56,9 @@ TEST(RecipeMessages, AnEdit) {
   EXPECT_EQ(message_of_edit(R"({"operator": "carve", "view": "front"})"),
             "r.json: edits[0].operator must be " + operator_names() + ", not the text \"carve\"");
   EXPECT_EQ(message_of_edit(R"({"operator": "smooth", "options": {"sigma": 1}})"),
-            "r.json: edits[0].view is missing; it must be front, back, left, right, top or bottom, "
-            "or an object with \"direction\" or \"facing\"");
+            "r.json: edits[0].view is missing; it must be front, back, left, right, top, bottom or "
+            "surface, "
+            "or an object with \"direction\", \"facing\" or \"surface\"");
   EXPECT_EQ(pen(good_pen, R"("strength": 2)"),
             "r.json: edits[0].strength must be a number from 0 to 1, not the number 2");
   EXPECT_EQ(pen(good_pen, R"("mode": "normal")"),
@@ -228,7 +229,8 @@ TEST(RecipeMessages, Views) {
                            "}");
   };
   EXPECT_EQ(view("\"up\""),
-            "r.json: edits[0].view must be front, back, left, right, top or bottom, not the text "
+            "r.json: edits[0].view must be front, back, left, right, top, bottom or surface, not "
+            "the text "
             "\"up\"");
   EXPECT_EQ(view("{}"),
             "r.json: edits[0].view.direction is missing; it must be three numbers [x, y, z]");

@@ -25,6 +25,7 @@ struct EditReport {
   /// The edit covers more texels than the largest chart has pixels: the finest take an interpolated
   /// change.
   bool coarser_than_texels = false;
+  int views = 0;      ///< that the edit looked from; the chart above is that of the largest
   PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
   std::size_t colors_changed = 0;  ///< texels (of a picture: pixels) of the colours, likewise
   EditTimes times;

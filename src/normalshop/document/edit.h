@@ -25,7 +25,12 @@ struct FacingView {
   float width = 0.0F;
   float height = 0.0F;
 };
-using ViewSpec = std::variant<NamedView, FreeView, FacingView>;
+/// All of the surface, from as many views as it takes: no strokes, no mirror.
+struct SurfaceView {
+  int views = 0;  ///< at most; 0: chosen
+};
+using ViewSpec = std::variant<NamedView, FreeView, FacingView, SurfaceView>;
+/// The one view that a spec means; not for SurfaceView.
 View resolve(const ViewSpec& spec, const Mesh& mesh);
 
 /// What happens to the details that exist under an edit.

@@ -75,6 +75,9 @@ class EditOperator {
   virtual bool reads() const = 0;
   /// Does it tell the base surface from the details on it? Only for operators that read.
   virtual bool reads_base() const { return false; }
+  /// How far it takes away what is finer than pixels of that length can show, 0 to 1: low-pass
+  /// filters. Others leave such details as they are.
+  virtual float removes_finer(float /*pixel*/) const { return 0.0F; }
   /// Does it look for its place in what is there before the edit?
   virtual bool picks() const { return false; }
   /// Does it read the colours too?

@@ -12,6 +12,8 @@ namespace {
 
 /// What an operator adds grows to a replacement over this change of slope: three degrees.
 constexpr float strong_change = 0.05F;
+/// The same where a filter takes away what is finer than the chart: half a degree.
+constexpr float noticed_change = 0.01F;
 
 /// Continues the identity smoothly towards steepest_slope.
 float limited(float steepness) {
@@ -39,12 +41,17 @@ MaskImage limit_grazing(SlopeSpan slopes) {
   return grazing;
 }
 
-void replace_grazing(MaskView grazing, SlopeView before, const ImageView<Vec3f>& base_normals,
-                     EditMode mode, OperatorResult& result) {
+void replace_details(MaskView grazing, float finer, SlopeView before,
+                     const ImageView<Vec3f>& base_normals, EditMode mode, OperatorResult& result) {
   for_pixels(result.region, [&](int x, int y) {
     Vec2f& change = result.change(x, y);
     float& coverage = result.coverage(x, y);
-    coverage *= grazing(x, y) * std::min(1.0F, change.norm() / strong_change);
+    const float size = change.norm();
+    float part = finer * std::min(1.0F, size / noticed_change);
+    if (!grazing.empty()) {
+      part = std::max(part, grazing(x, y) * std::min(1.0F, size / strong_change));
+    }
+    coverage *= part;
     if (coverage > 0.0F) {
       change += coverage * (before(x, y) - base_gradient(base_normals(x, y), mode));
     }

@@ -19,8 +19,9 @@ inline constexpr float steepest_slope = 6.0F;
 MaskImage limit_grazing(SlopeSpan slopes);
 
 /// Turns what an operator, reading `before`, added into what replaces it: change and coverage of
-/// result.region. A pixel without any change stays so.
-void replace_grazing(MaskView grazing, SlopeView before, const ImageView<Vec3f>& base_normals,
-                     EditMode mode, OperatorResult& result);
+/// result.region. It replaces as far as `grazing` (empty: 0) says, and everywhere as far as
+/// `finer`, EditOperator::removes_finer(), says. A pixel without any change stays so.
+void replace_details(MaskView grazing, float finer, SlopeView before,
+                     const ImageView<Vec3f>& base_normals, EditMode mode, OperatorResult& result);
 
 }  // namespace normalshop

@@ -34,16 +34,18 @@ View front_view(const Edit& edit, int width, int height) {
             free->up.head<2>().normalized().y() > straight;
     if (free->center) view.center = *free->center;
     part(free->width, free->height);
-  } else {
-    const auto& facing = std::get<FacingView>(edit.view);
+  } else if (const auto* facing = std::get_if<FacingView>(&edit.view)) {
     front = true;
-    view.center = facing.point;
-    part(facing.width, facing.height);
+    view.center = facing->point;
+    part(facing->width, facing->height);
+  } else {
+    front = true;  // all of the surface is all of the picture
   }
   if (front) return view;
-  throw InvalidInput(edit.path +
-                     ".view must look at a picture from the front: \"front\", or an object with "
-                     "\"facing\", or with the \"direction\" [0, 0, 1] and the \"up\" [0, 1, 0]");
+  throw InvalidInput(
+      edit.path +
+      ".view must look at a picture from the front: \"front\" or \"surface\", or an object with "
+      "\"facing\", or with the \"direction\" [0, 0, 1] and the \"up\" [0, 1, 0]");
 }
 
 /// Where the lattice of whole pixels has its origin, in pixels from the picture's middle, y up:
@@ -309,6 +311,7 @@ EditReport ImageDocument::apply(const Edit& edit) {
     report.pushed = push_window(result, weight, covers, placed.window, images_.normals);
   }
   report.times.push = watch.lap();
+  report.views = 1;
   report.chart_width = placed.grid.width();
   report.chart_height = placed.grid.height();
   report.pixel = 1.0F;

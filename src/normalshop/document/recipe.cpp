@@ -19,13 +19,25 @@ Vec3f direction_field(const FieldReader& reader) {
   return v;
 }
 
+constexpr std::string_view surface_name = "surface";
+constexpr int most_views = 192;
+
 ViewSpec read_view(const FieldReader& reader) {
+  std::vector<std::string_view> names = names_list<NamedView>();
+  names.push_back(surface_name);
   if (reader.value().text() != nullptr) {
-    return static_cast<NamedView>(reader.one_of(names_list<NamedView>()));
+    const std::size_t name = reader.one_of(names);
+    if (names[name] == surface_name) return SurfaceView{};
+    return static_cast<NamedView>(name);
   }
   if (reader.value().object() == nullptr) {
-    reader.fail(join_names(names_list<NamedView>()) +
-                ", or an object with \"direction\" or \"facing\"");
+    reader.fail(join_names(names) + ", or an object with \"direction\", \"facing\" or \"surface\"");
+  }
+  if (reader.has(surface_name)) {
+    reader.only({surface_name});
+    const FieldReader surface = reader.required(surface_name);
+    surface.only({"views"});
+    return SurfaceView{surface.required("views").whole_number(1, most_views)};
   }
   if (reader.has("facing")) {
     reader.only({"facing", "width", "height"});
@@ -115,6 +127,19 @@ MirrorPlane read_mirror(const FieldReader& reader) {
   return plane;
 }
 
+/// Strokes and planes of symmetry are of one view.
+void check_for_surface(const Edit& edit, const FieldReader& reader) {
+  for (const char* field : {"strokes", "mirror"}) {
+    if (reader.has(field)) reader.required(field).fail("left out where the view is \"surface\"");
+  }
+  try {
+    edit.operation->check_strokes({}, "");
+  } catch (const InvalidInput&) {
+    reader.required("view").fail("one view, since \"" + std::string(edit.operation->name()) +
+                                 "\" needs strokes here");
+  }
+}
+
 Edit read_edit(const FieldReader& reader, Assets& assets) {
   reader.only({"operator", "view", "mode", "details", "strength", "effective", "options", "strokes",
                "mirror", "comment"});
@@ -122,6 +147,8 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   edit.path = reader.path();
   edit.operation = read_operator(reader, assets);
   edit.view = read_view(reader.required("view"));
+  // Several views have no direction in common.
+  if (std::holds_alternative<SurfaceView>(edit.view)) edit.mode = EditMode::Base;
   if (reader.has("mode")) {
     edit.mode = static_cast<EditMode>(reader.required("mode").one_of(names_list<EditMode>()));
   }
@@ -135,7 +162,11 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   if (reader.has("effective")) edit.effective = read_effective(reader.required("effective"));
   if (reader.has("strokes")) edit.strokes = read_strokes(reader.required("strokes"));
   if (reader.has("mirror")) edit.mirror = read_mirror(reader.required("mirror"));
-  edit.operation->check_strokes(edit.strokes, reader.path() + ".strokes");
+  if (std::holds_alternative<SurfaceView>(edit.view)) {
+    check_for_surface(edit, reader);
+  } else {
+    edit.operation->check_strokes(edit.strokes, reader.path() + ".strokes");
+  }
   return edit;
 }
 
@@ -152,10 +183,13 @@ Value view_value(const ViewSpec& spec) {
     fields.emplace_back("up", vec3_value(free->up));
     if (free->center) fields.emplace_back("center", vec3_value(*free->center));
     add_extent(fields, free->width, free->height);
+  } else if (const auto* facing = std::get_if<FacingView>(&spec)) {
+    fields.emplace_back("facing", vec3_value(facing->point));
+    add_extent(fields, facing->width, facing->height);
   } else {
-    const auto& facing = std::get<FacingView>(spec);
-    fields.emplace_back("facing", vec3_value(facing.point));
-    add_extent(fields, facing.width, facing.height);
+    const int views = std::get<SurfaceView>(spec).views;
+    if (views == 0) return surface_name;
+    fields.emplace_back(surface_name, Value::Object{{"views", views}});
   }
   return fields;
 }

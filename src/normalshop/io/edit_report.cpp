@@ -105,6 +105,7 @@ Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports
                                 {"texels_changed", e.pushed.changed},
                                 {"largest_change_degrees", e.pushed.largest_change},
                                 {"colors_changed", e.colors_changed},
+                                {"views", e.views},
                                 {"chart", Value::Array{e.chart_width, e.chart_height}},
                                 {"pixel", e.pixel},
                                 {"coarser_than_texels", e.coarser_than_texels},

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/sample.h"
 #include "normalshop/document/operators/area_operator.h"
 
 namespace normalshop {
 
 /// An edit that filters the slopes in an area. `Filter` has Options, name, summary, and
 /// check(options, reader), limit(options, largest sigma in pixels), reach(options) and
-/// apply(input, target, region, options).
+/// apply(input, target, region, options); a low-pass filter has low_pass_sigma(options), too.
 template <class Filter>
 class FilterOperator : public AreaEdit<AreaEditOptions<typename Filter::Options>> {
  public:
@@ -19,6 +20,13 @@ class FilterOperator : public AreaEdit<AreaEditOptions<typename Filter::Options>
   std::string_view name() const override { return Filter::name; }
   bool reads() const override { return true; }
   float reach(float /*pixel*/) const override { return Filter::reach(this->options_); }
+  float removes_finer(float pixel) const override {
+    if constexpr (requires { Filter::low_pass_sigma(this->options_); }) {
+      // From there on the finest waves that pixels show are gone by 99 %.
+      return smoothstep(0.5F, 1.0F, Filter::low_pass_sigma(this->options_) / pixel);
+    }
+    return 0.0F;
+  }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     Options scaled = scale_lengths(this->options_, 1.0F / input.pixel);

@@ -41,6 +41,9 @@ struct LinearFilter {
     if (options.kind == FilterKind::Scale) return 0.0F;
     return (options.kind == FilterKind::LaplacianOfGaussian ? 8.0F : 4.0F) * options.sigma;
   }
+  static float low_pass_sigma(const Options& options) {
+    return options.kind == FilterKind::Gaussian ? options.sigma : 0.0F;
+  }
   static void apply(const OperatorInput& input, SlopeSpan target, Rect region,
                     const Options& options) {
     FilterOptions chosen = options;

@@ -15,6 +15,7 @@ struct SmoothFilter {
     options.sigma = std::min(options.sigma, largest);
   }
   static float reach(const Options& options) { return 4.0F * options.sigma; }
+  static float low_pass_sigma(const Options& options) { return options.sigma; }
   static void apply(const OperatorInput& input, SlopeSpan target, Rect region,
                     const Options& options) {
     smooth(input.source, input.validity, target, region, options, input.border);

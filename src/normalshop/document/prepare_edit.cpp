@@ -1,0 +1,201 @@
+#include "normalshop/document/prepare_edit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "normalshop/chart/extend.h"
+#include "normalshop/chart/resolution.h"
+#include "normalshop/core/error.h"
+#include "normalshop/core/for_pixels.h"
+#include "normalshop/core/parallel.h"
+#include "normalshop/core/stopwatch.h"
+#include "normalshop/document/grazing.h"
+#include "normalshop/document/surface_check.h"
+
+namespace normalshop {
+
+namespace {
+
+Extent view_extent(const View& view) {
+  return {Vec2f(-0.5F * view.width, -0.5F * view.height),
+          Vec2f(0.5F * view.width, 0.5F * view.height)};
+}
+
+/// A box in the view that holds the whole model.
+Extent model_extent(const Bounds& bounds, const View& view) {
+  const Vec3f middle = view.to_chart(bounds.center() - view.center);
+  const Vec3f half = 0.5F * (bounds.high - bounds.low);
+  const Vec2f reach(view.right.cwiseAbs().dot(half), view.up.cwiseAbs().dot(half));
+  return {middle.head<2>() - reach, middle.head<2>() + reach};
+}
+
+/// The window that the edit needs. There is nothing to read or write beyond the model, so that a
+/// huge brush or sigma costs no more than the whole model does; and rather than let the pixels grow
+/// coarser than the texels, an edit reads less far.
+ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place, float pixel) {
+  const Extent& extent = place.extent;
+  const Vec2f spare =
+      0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
+  const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach(pixel));
+  const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, place.model);
+  const Extent window = widened(read, 4.0F * pixel);
+  try {
+    return make_grid(view, pixel, window.low, window.high);
+  } catch (const InvalidInput&) {
+    throw InvalidInput(edit.path +
+                       ".view must have its centre nearer to the model: its pixels are too many to "
+                       "count from there");
+  }
+}
+
+/// The two numbers that the operator sees, and where they are real.
+struct Source {
+  SlopeImage slopes;
+  SlopeImage base;  ///< may be empty
+  SlopeImage seen;  ///< empty: slopes
+  MaskImage validity;
+  MaskImage grazing;  ///< may be empty
+};
+
+Source make_source(const Edit& edit, const EditingChart& chart) {
+  const int width = chart.grid.width();
+  const int height = chart.grid.height();
+  const bool with_base = edit.operation->reads_base();
+  const bool ignore = edit.details == DetailsRule::Ignore;
+  const bool with_seen = ignore && edit.operation->picks();
+  Source source{SlopeImage(width, height), {}, {}, MaskImage(width, height), {}};
+  if (with_base) source.base.resize(width, height);
+  if (with_seen) source.seen.resize(width, height);
+  parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
+    for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
+      for (int x = 0; x < width; ++x) {
+        const Vec3f& base = chart.base_normal(x, y);
+        // Steep slopes beside rims and steps would else outweigh the surface around them.
+        source.validity(x, y) = chart.weight(x, y);
+        const bool valid = chart.weight(x, y) > 0.0F;
+        const Vec2f below = valid ? base_gradient(base, edit.mode) : Vec2f(0.0F, 0.0F);
+        Vec2f details = below;
+        if (valid && (!ignore || with_seen)) {
+          details = gradient_from_normal(chart.normal(x, y), base, edit.mode);
+        }
+        source.slopes(x, y) = ignore ? below : details;
+        if (with_base) source.base(x, y) = below;
+        if (with_seen) source.seen(x, y) = details;
+      }
+    }
+  });
+  if (!ignore && edit.operation->reads()) source.grazing = limit_grazing(source.slopes);
+  extend(source.validity, source.slopes);
+  if (with_base) extend(source.validity, source.base);
+  return source;
+}
+
+bool has_colors(const StorageAtlas& storage) {
+  return std::any_of(storage.sets.begin(), storage.sets.end(),
+                     [](const StorageSet& set) { return !set.albedo.empty(); });
+}
+
+/// Rasterises, pulls what the operator needs and weighs.
+EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas& storage,
+                         const ChartGrid& grid, float model_size) {
+  EditingChart chart;
+  chart.grid = grid;
+  Rasterizer().rasterize(mesh, chart.grid, chart.ids);
+  PullOptions pulled;
+  const EditOperator& operation = *edit.operation;
+  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep);
+  pulled.albedo = operation.reads_colors() && has_colors(storage);
+  pull_attributes(mesh, storage, chart, pulled);
+  compute_weight(chart, effective_options(edit.effective, model_size));
+  return chart;
+}
+
+ColorResult run_colors(const Edit& edit, const OperatorInput& input, ColorView before) {
+  ColorResult result{ColorImage(before.width(), before.height()), {}};
+  result.region = edit.operation->run_colors(input, result.change);
+  for_pixels(result.region, [&](int x, int y) {
+    result.change(x, y) = edit.strength * (result.change(x, y) - before(x, y));
+  });
+  return result;
+}
+
+EditPlace find_place(const Edit& edit, const View& view, const std::optional<Extent>& part,
+                     const Bounds& box) {
+  EditPlace place{view_extent(view), model_extent(box, view), edit.operation->extent(edit.strokes)};
+  if (place.extent.empty()) place.extent = part.value_or(place.view);
+  place.extent = intersect(place.extent, widened(place.model, 1e-3F * box.diagonal()));
+  if (place.extent.empty()) {
+    fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), place.model);
+  }
+  return place;
+}
+
+/// Runs the operator and lets go of what push does not need.
+void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
+  EditingChart& chart = prepared.chart;
+  OperatorInput input = make_input(edit, chart.grid, place);
+  check_on_surface(edit, input.strokes, chart, input.region, place.model);
+  Source source;
+  if (edit.operation->reads() || edit.operation->picks()) source = make_source(edit, chart);
+  chart.normal = {};
+  if (edit.operation->reads()) input.source = source.slopes;
+  if (edit.operation->picks()) {
+    input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
+  }
+  input.colors = chart.albedo;
+  input.base = source.base;
+  input.validity = source.validity;
+  prepared.result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
+  const bool ignores = edit.details == DetailsRule::Ignore;
+  const float finer = ignores ? 0.0F : edit.operation->removes_finer(chart.grid.pixel);
+  const bool turns = finer > 0.0F || !source.grazing.empty();
+  prepared.replaces = ignores || turns;
+  if (turns) {
+    replace_details(source.grazing, finer, source.slopes, chart.base_normal, edit.mode,
+                    prepared.result);
+  }
+  if (edit.operation->moves_colors() && !chart.albedo.empty()) {
+    prepared.colors = run_colors(edit, input, chart.albedo);
+  }
+  chart.base_normal = {};
+  chart.albedo = {};
+}
+
+}  // namespace
+
+EffectiveOptions effective_options(const EffectiveAngles& angles, float model_size) {
+  constexpr float step_falloff_share = 0.004F;  // of the model's size, from depth steps on
+  EffectiveOptions options;
+  options.full_angle = angles.full;
+  options.zero_angle = angles.zero;
+  options.step_falloff = step_falloff_share * model_size;
+  return options;
+}
+
+PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
+                          const StorageAtlas& storage, const std::optional<Extent>& part) {
+  Stopwatch watch;
+  const Bounds box = bounds(mesh);
+  check_near_view(edit, view);
+  const EditPlace place = find_place(edit, view, part, box);
+  const CountedTexels counted =
+      edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
+  const float texel =
+      texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high, counted);
+  PreparedEdit prepared;
+  prepared.chart =
+      build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
+  EditReport& report = prepared.report;
+  const ChartGrid& grid = prepared.chart.grid;
+  report.views = 1;
+  report.chart_width = grid.width();
+  report.chart_height = grid.height();
+  report.pixel = grid.pixel;
+  report.coarser_than_texels = grid.pixel > 1.01F * texel;
+  report.times.pull = watch.lap();
+  operate(edit, place, prepared);
+  report.times.operate = watch.lap();
+  return prepared;
+}
+
+}  // namespace normalshop

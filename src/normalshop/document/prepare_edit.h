@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "normalshop/chart/effective.h"
+#include "normalshop/document/document.h"
+#include "normalshop/document/operate.h"
+
+namespace normalshop {
+
+/// What an operator adds to the colours of a chart.
+struct ColorResult {
+  ColorImage change;  ///< empty: nothing
+  Rect region;
+};
+
+/// An edit in one view before its push: pulled and operated on, nothing stored.
+struct PreparedEdit {
+  EditingChart chart;  ///< what push needs: grid, ids and weight
+  OperatorResult result;
+  ColorResult colors;
+  bool replaces = false;  ///< the result's coverage counts
+  EditReport report;
+
+  ChartEdit change(EditMode mode) const {
+    ChartEdit edit{mode, result.change, {}, result.region};
+    if (replaces) edit.coverage = result.coverage;
+    return edit;
+  }
+};
+
+/// `part` of the view, in units from its centre: where an edit of the whole view is wanted. Throws
+/// InvalidInput, naming the field, for what does not fit the surface that the view shows.
+PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
+                          const StorageAtlas& storage,
+                          const std::optional<Extent>& part = std::nullopt);
+
+/// The effective chart that an edit asks for, on a model of that size.
+EffectiveOptions effective_options(const EffectiveAngles& angles, float model_size);
+
+}  // namespace normalshop

@@ -1,0 +1,141 @@
+#include "document/edit_fixture.h"
+#include "document/picture_fixture.h"
+
+#include "normalshop/core/error.h"
+#include "normalshop/surface/seam_mismatch.h"
+
+/// Edits of all of a surface, from as many views as it takes.
+namespace normalshop::test {
+namespace {
+
+constexpr int atlas_size = 256;
+
+/// Sphere whose map holds waves of a period of about 0.3, in object space, equal on both sides of
+/// its seam.
+Document wavy_sphere(float amplitude) {
+  const Mesh mesh = uv_sphere(96, 48);
+  RawImage codes(atlas_size, atlas_size, 3, CodeType::F32);
+  for (int y = 0; y < atlas_size; ++y) {
+    for (int x = 0; x < atlas_size; ++x) {
+      const float around = 6.2831853F * (static_cast<float>(x) + 0.5F) / atlas_size;
+      const float down = 3.1415927F * (static_cast<float>(y) + 0.5F) / atlas_size;
+      const Vec3f base(std::sin(down) * std::sin(around), std::cos(down),
+                       std::sin(down) * std::cos(around));
+      const Vec3f wave(std::sin(20.0F * base.y()), std::sin(20.0F * base.z()),
+                       std::sin(20.0F * base.x()));
+      const Vec3f n = (base + amplitude * (wave - wave.dot(base) * base)).normalized();
+      std::copy_n(n.data(), 3, codes.row<float>(y) + static_cast<std::ptrdiff_t>(3 * x));
+    }
+  }
+  return document(
+      mesh, NormalMap(std::move(codes), {.space = NormalSpace::Object, .signed_float = true}));
+}
+
+double mean_angle(const NormalMap& a, const NormalMap& b) {
+  double sum = 0.0;
+  for (int y = 0; y < atlas_size; ++y) {
+    for (int x = 0; x < atlas_size; ++x) {
+      sum += static_cast<double>(degrees_between(a.normal(x, y), b.normal(x, y)));
+    }
+  }
+  return sum / (atlas_size * atlas_size);
+}
+
+std::string smooth_all(const std::string& view = R"("surface")") {
+  return R"("operator": "smooth", "view": )" + view + R"(, "options": {"sigma": 0.04})";
+}
+
+TEST(SurfaceEdit, SmoothsAllOfASphereWhateverTheViews) {
+  Document once = wavy_sphere(0.3F);
+  Document twice = once;
+  const Document before = once;
+  const EditReport report = once.apply(edit(smooth_all()));
+  const EditReport more = twice.apply(
+      edit(smooth_all(R"({"surface": {"views": )" + std::to_string(2 * report.views) + "}}")));
+  EXPECT_GE(report.views, 8);
+  EXPECT_EQ(more.views, 2 * report.views);
+  EXPECT_GT(mean_angle(map_of(once), map_of(before)), 3.0);
+  EXPECT_LT(mean_angle(map_of(once), map_of(twice)), 0.1);
+  EXPECT_EQ(once.log().size(), 1U);
+}
+
+/// A Gaussian leaves exp(-(k sigma)^2 / 2) of a wave, wherever one looks. On the surface the waves
+/// are slower the more it is turned towards their own direction: two thirds of k^2 in the mean.
+TEST(SurfaceEdit, LeavesWhatTheFilterLeaves) {
+  Document all = wavy_sphere(0.1F);
+  const Document flat = wavy_sphere(0.0F);
+  const double before = mean_angle(map_of(all), map_of(flat));
+  all.apply(edit(R"("operator": "smooth", "view": "surface", "options": {"sigma": 0.03})"));
+  const double after = mean_angle(map_of(all), map_of(flat));
+  EXPECT_NEAR(after / before, std::exp(-0.5 * 0.36 * 2.0 / 3.0), 0.02);
+}
+
+TEST(SurfaceEdit, BothSidesOfASeamAgreeAfterwards) {
+  Document all = document(uv_sphere(96, 48), noise_map(atlas_size, CodeType::U16));
+  const std::vector<const NormalMap*> maps{&map_of(all)};
+  const std::vector<SeamSample> samples = sample_seams(all.mesh(), all.seams(), maps);
+  const double before = summarize(seam_angles(all.mesh(), samples, maps)).mean;
+  all.apply(edit(smooth_all()));
+  const double after = summarize(seam_angles(all.mesh(), samples, maps)).mean;
+  EXPECT_GT(before, 5.0);
+  EXPECT_LT(after, 0.2);
+}
+
+TEST(SurfaceEdit, StrengthIsAPartOfIt) {
+  Document none = wavy_sphere(0.3F);
+  Document half = none;
+  Document full = none;
+  const Document before = none;
+  none.apply(edit(smooth_all() + R"(, "strength": 0)"));
+  EXPECT_FALSE(map_of(none).has_edits());
+  half.apply(edit(smooth_all() + R"(, "strength": 0.5)"));
+  full.apply(edit(smooth_all()));
+  EXPECT_NEAR(mean_angle(map_of(half), map_of(before)) / mean_angle(map_of(full), map_of(before)),
+              0.5, 0.05);
+}
+
+TEST(SurfaceEdit, IsTheWholePictureOfAPicture) {
+  ImageDocument surface = picture(waves(32, 32, 2, 0.3F));
+  ImageDocument front = picture(waves(32, 32, 2, 0.3F));
+  surface.apply(edit(R"("operator": "smooth", "view": "surface", "options": {"sigma": 3})"));
+  front.apply(edit(R"("operator": "smooth", "view": "front", "options": {"sigma": 3})"));
+  EXPECT_EQ(farthest(surface, slopes_of(front).slopes), 0.0F);
+}
+
+std::string refusal(const std::string& fields) {
+  try {
+    edit(fields);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SurfaceEdit, SaysWhatDoesNotFit) {
+  EXPECT_EQ(refusal(smooth_all() + R"(, "mirror": "x")"),
+            "r.json: edits[0].mirror must be left out where the view is \"surface\", not the text "
+            "\"x\"");
+  EXPECT_NE(refusal(smooth_all() + R"(, "strokes": [[[0, 0]]])").find("edits[0].strokes"),
+            std::string::npos);
+  const std::string pen =
+      refusal(R"("operator": "pen", "view": "surface", "options": {"width": 1, "height": 1})");
+  EXPECT_EQ(pen,
+            "r.json: edits[0].view must be one view, since \"pen\" needs strokes here, not "
+            "the text \"surface\"");
+  EXPECT_NE(refusal(smooth_all(R"({"surface": {"views": 0}})")).find("from 1 to 192"),
+            std::string::npos);
+  EXPECT_NE(refusal(smooth_all(R"({"surface": {"view": 3}})")).find("surface"), std::string::npos);
+}
+
+TEST(SurfaceEdit, ComesBackFromItsJson) {
+  for (const char* view : {R"("surface")", R"({"surface":{"views":7}})"}) {
+    const Recipe recipe = parse(R"({"version": 1, "edits": [{)" + smooth_all(view) + "}]}");
+    const std::string text = to_json(to_value(recipe));
+    EXPECT_EQ(to_json(to_value(parse(text))), text);
+    EXPECT_EQ(recipe.edits[0].mode, EditMode::Base);
+    EXPECT_NE(text.find("surface"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace normalshop::test
