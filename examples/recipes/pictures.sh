@@ -44,6 +44,7 @@ picture bumps $head_model "$head_flags" "$skin --view=0.35,0,1 --width 4.6 --cen
 picture bricks $head_model "$head_flags" "$skin --view=0.35,0,1 --width 4.6 --center 0,1.5,0"
 picture smooth $head_model "$head_flags" "$skin --width 2.6 --center 0,1.3,0 --light 0.5,0.5,1"
 picture brows $head_model "$head_flags" "--width 3 --center 0,2,0" "$skin" "$skin"
+picture exaggerate $head_model "${head_flags% --size 4096}" "$skin --view=-1,0.1,0.55 --width 5.4 --center 0,1.4,0 --light=0.2,0.8,0.6"
 picture waterbottle khr_waterbottle/WaterBottle.gltf "" "--view=-0.3,0.3,1 --width 0.17 --center 0,0.048,0"
 picture tea_set polyhaven_tea_set_01/tea_set_01_1k.gltf "--size 4096" \
   "--view=-0.1,1,0.6 --width 0.4 --center -0.23,0.02,-0.07 --light=-0.7,0.5,0.7"

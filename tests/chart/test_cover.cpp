@@ -12,14 +12,23 @@
 namespace normalshop::test {
 namespace {
 
+EditingChart chart_of(const Mesh& mesh, const StorageAtlas& storage, const CoverView& view,
+                      float pixel, const CoverOptions& options) {
+  EditingChart chart;
+  chart.grid = make_grid(view.view, pixel, view.low, view.high);
+  view.rasterize(mesh, chart.grid, chart.ids);
+  pull_attributes(mesh, storage, chart);
+  compute_weight(chart, options.effective);
+  return chart;
+}
+
 /// The same change of slopes from each view that covers the mesh.
 PushResult blend_constant(const Mesh& mesh, StorageAtlas& storage, const CoverOptions& options,
                           const Vec2f& change) {
   SurfaceBlend blend(storage);
   for (const CoverView& view : cover_surface(mesh, options)) {
     const float pixel = std::max(view.view.width, view.view.height) / 250.0F;
-    EditingChart chart = pull(mesh, storage, make_grid(view.view, pixel, view.low, view.high));
-    compute_weight(chart, options.effective);
+    const EditingChart chart = chart_of(mesh, storage, view, pixel, options);
     const EditImages images = constant_edit(chart, change);
     blend.add(mesh, chart, images.edit(EditMode::Base), storage);
   }
@@ -55,7 +64,11 @@ TEST(Cover, needs_one_view_for_a_plane_and_takes_no_more_than_asked_for) {
   EXPECT_GT(one[0].view.direction.z(), 0.99F);
   CoverOptions few;
   few.views = 4;
-  EXPECT_EQ(cover_surface(smooth_sphere(32, 16), few).size(), 4U);
+  int outer = 0;  // the others show what these leave
+  for (const CoverView& view : cover_surface(smooth_sphere(32, 16), few)) {
+    outer += view.shown == nullptr ? 1 : 0;
+  }
+  EXPECT_EQ(outer, 4);
 }
 
 TEST(Cover, is_the_same_for_one_thread) {
@@ -100,8 +113,7 @@ TEST(SurfaceBlend, of_equal_results_is_that_result) {
   SurfaceBlend blend(storage);
   CoverOptions options;
   for (const CoverView& view : cover_surface(mesh, options)) {
-    EditingChart chart = pull(mesh, storage, make_grid(view.view, 0.008F, view.low, view.high));
-    compute_weight(chart, options.effective);
+    const EditingChart chart = chart_of(mesh, storage, view, 0.008F, options);
     const EditImages images = constant_edit(chart, {0, 0}, 1.0F);
     blend.add(mesh, chart, images.edit(EditMode::Base), storage);
   }
@@ -112,6 +124,35 @@ TEST(SurfaceBlend, of_equal_results_is_that_result) {
                                                              base_normal_at(mesh, p))));
   });
   EXPECT_LT(worst, 0.05F);
+}
+
+/// The wall of a cavity in a ball, which no view of the whole shows.
+TEST(SurfaceBlend, reaches_the_inside_of_a_cavity) {
+  Mesh mesh = smooth_sphere(32, 16);
+  const Mesh ball = mesh;
+  for (Vec2f& uv : mesh.uvs) uv.y() *= 0.5F;
+  for (std::size_t t = 0; t < ball.triangle_count(); ++t) {
+    const auto base = static_cast<std::uint32_t>(ball.positions.size());
+    const Vec3u& corners = ball.triangles[t];
+    mesh.triangles.push_back(Vec3u(base + corners[0], base + corners[2], base + corners[1]));
+    for (const std::size_t k : {0U, 2U, 1U}) {
+      mesh.normals.push_back(-ball.normals[3 * t + k]);
+      mesh.tangents.push_back(ball.tangents[3 * t + k]);
+      mesh.uvs.emplace_back(ball.uvs[3 * t + k].x(), 0.5F + 0.5F * ball.uvs[3 * t + k].y());
+    }
+    mesh.texture_sets.push_back(0);
+  }
+  for (const Vec3f& p : ball.positions) mesh.positions.push_back(0.5F * p);
+  StorageAtlas storage = storage_of(mesh, flat_normal_map(128, 128, CodeType::U8));
+  const std::vector<CoverView> views = cover_surface(mesh, {});
+  EXPECT_EQ(views.front().shown, nullptr);
+  EXPECT_NE(views.back().shown, nullptr);
+  blend_constant(mesh, storage, {}, {0.2F, 0.0F});
+  std::size_t missed = 0;
+  for_texels(storage, [&](int x, int y, const SurfacePoint&) {
+    missed += storage.sets[0].normals.edited(x, y) ? 0 : 1;
+  });
+  EXPECT_EQ(missed, 0U);
 }
 
 TEST(SurfaceBlend, of_no_change_stores_nothing) {

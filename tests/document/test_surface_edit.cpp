@@ -8,12 +8,12 @@
 namespace normalshop::test {
 namespace {
 
-constexpr int atlas_size = 256;
+constexpr int atlas_size = 160;
 
 /// Sphere whose map holds waves of a period of about 0.3, in object space, equal on both sides of
 /// its seam.
 Document wavy_sphere(float amplitude) {
-  const Mesh mesh = uv_sphere(96, 48);
+  const Mesh mesh = uv_sphere(64, 32);
   RawImage codes(atlas_size, atlas_size, 3, CodeType::F32);
   for (int y = 0; y < atlas_size; ++y) {
     for (int x = 0; x < atlas_size; ++x) {
@@ -71,7 +71,7 @@ TEST(SurfaceEdit, LeavesWhatTheFilterLeaves) {
 }
 
 TEST(SurfaceEdit, BothSidesOfASeamAgreeAfterwards) {
-  Document all = document(uv_sphere(96, 48), noise_map(atlas_size, CodeType::U16));
+  Document all = document(uv_sphere(64, 32), noise_map(atlas_size, CodeType::U16));
   const std::vector<const NormalMap*> maps{&map_of(all)};
   const std::vector<SeamSample> samples = sample_seams(all.mesh(), all.seams(), maps);
   const double before = summarize(seam_angles(all.mesh(), samples, maps)).mean;
@@ -122,7 +122,7 @@ TEST(SurfaceEdit, SaysWhatDoesNotFit) {
   EXPECT_EQ(pen,
             "r.json: edits[0].view must be one view, since \"pen\" needs strokes here, not "
             "the text \"surface\"");
-  EXPECT_NE(refusal(smooth_all(R"({"surface": {"views": 0}})")).find("from 1 to 192"),
+  EXPECT_NE(refusal(smooth_all(R"({"surface": {"views": 0}})")).find("from 1 to 96"),
             std::string::npos);
   EXPECT_NE(refusal(smooth_all(R"({"surface": {"view": 3}})")).find("surface"), std::string::npos);
 }

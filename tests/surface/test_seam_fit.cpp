@@ -104,6 +104,26 @@ TEST(SeamFit, MovesOnlyWhatTheEditChanged) {
   EXPECT_LT(left.mismatch(left.fitted()), 0.2);
 }
 
+/// What was apart before may stay so, or close as far as it is told.
+TEST(SeamFit, KeepsOrClosesWhatWasApart) {
+  const Mesh mesh = test::plane_two_charts(4);
+  const Seams seams = find_seams(mesh);
+  const TexelMap texels(mesh, 0, size, size);
+  const Vec3f apart = Vec3f(0.36F, 0.1F, 1.0F).normalized();
+  for (const float kept : {1.0F, 0.5F, 0.0F}) {
+    NormalMap map = flat_normal_map(size, size, CodeType::F32);
+    set_normals(mesh, texels, 0, 32, tilted, map);
+    set_normals(mesh, texels, 32, 64, apart, map);
+    const SeamFit fit(mesh, seams.edges, std::array<const NormalMap*, 1>{&map}, kept);
+    set_normals(mesh, texels, 0, 32, Vec3f(-0.1F, 0.2F, 1.0F).normalized(), map);
+    set_normals(mesh, texels, 32, 64, Vec3f(-0.04F, 0.2F, 1.0F).normalized(), map);
+    fit.apply(std::array<NormalMap*, 1>{&map});
+    const double after =
+        measure_seams(mesh, seams.edges, std::array<const NormalMap*, 1>{&map}).mean;
+    EXPECT_NEAR(after, static_cast<double>(kept) * angle_degrees(tilted, apart), 0.2) << kept;
+  }
+}
+
 TEST(SeamFit, KeepsHardEdges) {
   const Mesh mesh = test::cube(2);
   const Seams seams = find_seams(mesh);

@@ -13,20 +13,32 @@ namespace normalshop {
 
 namespace {
 
-constexpr int candidates = 192;
-constexpr int sample_count = 16384;
-constexpr float pixels_across = 400.0F;  // of the charts in which candidates are judged
+constexpr int candidates = 96;
+constexpr int sample_count = 12288;
+constexpr float pixels_across = 256.0F;  // of the charts in which candidates are judged
 /// Views that improve less than this part of the whole area are not worth their time.
 constexpr double least_gain = 0.004;
+/// The same of hidden surface, of which there is little.
+constexpr double least_inner_gain = 0.02;
+/// Surface below surface: how often what hides it is left away, and which part of the whole area is
+/// worth that.
+constexpr int most_layers = 4;
+constexpr double least_layer = 0.001;
 /// A view is left away where it counts less than this of all.
 constexpr float least_share = 0.005F;
 
-/// Directions spread evenly over the sphere: a Fibonacci lattice.
+/// The axes, which faces of made things look along, and directions spread evenly over the sphere: a
+/// Fibonacci lattice.
 std::vector<Vec3f> directions() {
   std::vector<Vec3f> out;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.push_back(Vec3f::Unit(axis));
+    out.push_back(-Vec3f::Unit(axis));
+  }
   const double golden = 3.14159265358979 * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < candidates; ++i) {
-    const double y = 1.0 - (2.0 * i + 1.0) / candidates;
+  const int count = candidates - 6;
+  for (int i = 0; i < count; ++i) {
+    const double y = 1.0 - (2.0 * i + 1.0) / count;
     const double radius = std::sqrt(1.0 - y * y);
     out.emplace_back(static_cast<float>(radius * std::sin(golden * i)), static_cast<float>(y),
                      static_cast<float>(radius * std::cos(golden * i)));
@@ -34,19 +46,22 @@ std::vector<Vec3f> directions() {
   return out;
 }
 
-/// Surface points of equal area each.
-std::vector<SurfacePoint> spread_samples(const Mesh& mesh) {
-  std::vector<double> areas(mesh.triangle_count());
-  for (std::size_t t = 0; t < areas.size(); ++t) {
-    const Vec3f& a = mesh.position(3 * t);
-    const double area =
-        0.5 * (mesh.position(3 * t + 1) - a).cross(mesh.position(3 * t + 2) - a).norm();
-    areas[t] = std::isfinite(area) ? area : 0.0;
-  }
+double area_of(const Mesh& mesh, std::size_t triangle) {
+  const Vec3f& a = mesh.position(3 * triangle);
+  const Vec3f normal =
+      (mesh.position(3 * triangle + 1) - a).cross(mesh.position(3 * triangle + 2) - a);
+  const auto area = static_cast<double>(0.5F * normal.norm());
+  return std::isfinite(area) ? area : 0.0;
+}
+
+/// Surface points of equal area each on the shown triangles; none without area.
+std::vector<SurfacePoint> spread_samples(const Mesh& shown) {
+  std::vector<double> areas(shown.triangle_count());
+  for (std::size_t t = 0; t < areas.size(); ++t) areas[t] = area_of(shown, t);
   std::partial_sum(areas.begin(), areas.end(), areas.begin());
   const double all = areas.empty() ? 0.0 : areas.back();
-  if (!(all > 0.0)) throw InvalidInput("the model has no surface to cover");
   std::vector<SurfacePoint> samples;
+  if (!(all > 0.0)) return samples;
   for (int i = 0; i < sample_count; ++i) {
     const auto found = std::upper_bound(areas.begin(), areas.end(), (i + 0.5) / sample_count * all);
     const auto triangle = static_cast<std::uint32_t>(
@@ -70,11 +85,12 @@ struct Seen {
 };
 
 /// What a view shows of all samples.
-std::vector<Seen> look(const Mesh& mesh, const View& view, const EffectiveOptions& effective,
+std::vector<Seen> look(const Mesh& mesh, const CoverView& cover, const EffectiveOptions& effective,
                        const std::vector<SurfacePoint>& samples) {
+  const View& view = cover.view;
   EditingChart chart;
   chart.grid = make_grid(view, std::max(view.width, view.height) / pixels_across);
-  Rasterizer().rasterize(mesh, chart.grid, chart.ids);
+  cover.rasterize(mesh, chart.grid, chart.ids);
   pull_attributes(mesh, {}, chart, {.normals = false, .albedo = false});
   compute_weight(chart, effective);
   const EditReach reach(chart, chart.weight.rect(), [](int, int) { return true; });
@@ -106,43 +122,36 @@ float quality(const Seen& seen) {
 
 float share(const Seen& seen) { return seen.weight * facing_share(seen.cosine); }
 
-/// The view with the part in which it counts; low above high: nowhere.
-CoverView with_part(const Mesh& mesh, const View& view, const std::vector<Seen>& seen,
-                    const std::vector<float>& all_shares,
-                    const std::vector<SurfacePoint>& samples) {
-  CoverView out{view, Vec2f::Constant(3.4e38F), Vec2f::Constant(-3.4e38F)};
+/// The part in which the view counts; low above high: nowhere.
+void choose_part(const Mesh& mesh, const std::vector<Seen>& seen,
+                 const std::vector<float>& all_shares, const std::vector<SurfacePoint>& samples,
+                 CoverView& cover) {
+  const View& view = cover.view;
+  cover.low = Vec2f::Constant(3.4e38F);
+  cover.high = -cover.low;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!(share(seen[i]) > least_share * all_shares[i])) continue;
     const Vec2f p = view.to_chart(position_at(mesh, samples[i]) - view.center).head<2>();
-    out.low = out.low.cwiseMin(p);
-    out.high = out.high.cwiseMax(p);
+    cover.low = cover.low.cwiseMin(p);
+    cover.high = cover.high.cwiseMax(p);
   }
   // Between samples there is surface, too.
   const float margin = 0.02F * std::max(view.width, view.height);
-  out.low -= Vec2f::Constant(margin);
-  out.high += Vec2f::Constant(margin);
-  return out;
+  cover.low -= Vec2f::Constant(margin);
+  cover.high += Vec2f::Constant(margin);
 }
 
-}  // namespace
-
-std::vector<CoverView> cover_surface(const Mesh& mesh, const CoverOptions& options) {
-  const std::vector<SurfacePoint> samples = spread_samples(mesh);
-  std::vector<View> views;
-  std::vector<std::vector<Seen>> seen;
-  for (const Vec3f& direction : directions()) {
-    views.push_back(framing_view(mesh, direction));
-    seen.push_back(look(mesh, views.back(), options.effective, samples));
-  }
-  const auto limit = static_cast<std::size_t>(options.views > 0 ? options.views : candidates);
-  std::vector<float> best(samples.size(), 0.0F);
+/// Indices of the views that improve most, one after the other.
+std::vector<std::size_t> choose(const std::vector<std::vector<Seen>>& seen, std::size_t limit,
+                                double worth) {
+  std::vector<float> best(seen.front().size(), 0.0F);
   std::vector<std::size_t> chosen;
   while (chosen.size() < limit) {
     std::size_t next = 0;
     double most = 0.0;
-    for (std::size_t v = 0; v < views.size(); ++v) {
+    for (std::size_t v = 0; v < seen.size(); ++v) {
       double gain = 0.0;
-      for (std::size_t i = 0; i < samples.size(); ++i) {
+      for (std::size_t i = 0; i < best.size(); ++i) {
         gain += static_cast<double>(std::max(0.0F, quality(seen[v][i]) - best[i]));
       }
       if (gain > most) {
@@ -150,23 +159,92 @@ std::vector<CoverView> cover_surface(const Mesh& mesh, const CoverOptions& optio
         next = v;
       }
     }
-    const bool worth = most > least_gain * sample_count;
-    if (!(most > 0.0) || (options.views == 0 && !worth)) break;
+    if (!(most > worth)) break;
     chosen.push_back(next);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t i = 0; i < best.size(); ++i) {
       best[i] = std::max(best[i], quality(seen[next][i]));
     }
   }
+  return chosen;
+}
+
+/// Triangles whose middle the views show with less than their full weight: what they leave to be
+/// shown; all others are points.
+std::shared_ptr<const Mesh> what_is_left(const Mesh& mesh, const Mesh& shown,
+                                         const std::vector<CoverView>& views,
+                                         const EffectiveOptions& effective) {
+  std::vector<SurfacePoint> middles;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    middles.push_back({static_cast<std::uint32_t>(t), 1.0F / 3.0F, 1.0F / 3.0F});
+  }
+  std::vector<float> weights(middles.size(), 0.0F);
+  for (const CoverView& view : views) {
+    const std::vector<Seen> seen = look(mesh, view, effective, middles);
+    for (std::size_t i = 0; i < seen.size(); ++i) weights[i] += seen[i].weight;
+  }
+  auto left = std::make_shared<Mesh>();
+  left->positions = mesh.positions;
+  left->triangles = shown.triangles;
+  for (std::size_t t = 0; t < weights.size(); ++t) {
+    if (weights[t] > 0.95F) left->triangles[t] = Vec3u::Zero();
+  }
+  return left;
+}
+
+/// Views of the triangles that are shown.
+std::vector<CoverView> cover_layer(const Mesh& mesh, const std::shared_ptr<const Mesh>& shown,
+                                   const CoverOptions& options, double least_area) {
+  const std::vector<SurfacePoint> samples = spread_samples(shown ? *shown : mesh);
+  std::vector<CoverView> views;
+  std::vector<std::vector<Seen>> seen;
+  for (const Vec3f& direction : directions()) {
+    const View view = framing_view(mesh, direction);
+    views.push_back({view, Vec2f::Zero(), Vec2f::Zero(), shown});
+    seen.push_back(look(mesh, views.back(), options.effective, samples));
+  }
+  const bool given = options.views > 0 && !shown;
+  const auto limit = static_cast<std::size_t>(given ? options.views : candidates);
+  const std::vector<std::size_t> chosen =
+      choose(seen, limit, given ? 0.0 : least_area * sample_count);
   std::vector<float> shares(samples.size(), 0.0F);
   for (const std::size_t v : chosen) {
     for (std::size_t i = 0; i < samples.size(); ++i) shares[i] += share(seen[v][i]);
   }
   std::vector<CoverView> out;
   for (const std::size_t v : chosen) {
-    const CoverView view = with_part(mesh, views[v], seen[v], shares, samples);
-    if (view.low.x() < view.high.x()) out.push_back(view);
+    CoverView& view = views[v];
+    choose_part(mesh, seen[v], shares, samples, view);
+    if (view.low.x() < view.high.x()) out.push_back(std::move(view));
   }
   return out;
+}
+
+double total_area(const Mesh& mesh) {
+  double area = 0.0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) area += area_of(mesh, t);
+  return area;
+}
+
+}  // namespace
+
+void CoverView::rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& out) const {
+  const BackFaces back = shown ? BackFaces::LeaveAway : BackFaces::Draw;
+  Rasterizer().rasterize(shown ? *shown : mesh, grid, out, back);
+}
+
+std::vector<CoverView> cover_surface(const Mesh& mesh, const CoverOptions& options) {
+  const double all = total_area(mesh);
+  if (!(all > 0.0)) throw InvalidInput("the model has no surface to cover");
+  std::vector<CoverView> views = cover_layer(mesh, nullptr, options, least_gain);
+  std::shared_ptr<const Mesh> shown = what_is_left(mesh, mesh, views, options.effective);
+  for (int layer = 1; layer < most_layers; ++layer) {
+    if (!(total_area(*shown) > least_layer * all)) break;
+    const std::vector<CoverView> inner = cover_layer(mesh, shown, options, least_inner_gain);
+    if (inner.empty()) break;
+    shown = what_is_left(mesh, *shown, inner, options.effective);
+    views.insert(views.end(), inner.begin(), inner.end());
+  }
+  return views;
 }
 
 }  // namespace normalshop

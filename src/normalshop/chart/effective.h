@@ -10,6 +10,8 @@ struct EffectiveOptions {
   float full_angle = 60.0F;    ///< degrees between base normal and viewing direction: up to here 1
   float zero_angle = 75.0F;    ///< degrees: from here 0
   float step_falloff = 0.01F;  ///< object units from a depth step at which the weight is 1 again
+
+  bool operator==(const EffectiveOptions&) const = default;
 };
 
 /// Fills chart.weight from chart.ids and chart.base_normal, which must be of the grid's size. A

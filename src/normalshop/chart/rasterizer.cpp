@@ -191,7 +191,7 @@ void Rasterizer::draw_tiles(const Mesh& mesh, IdBuffer& out, bool front) {
   });
 }
 
-void Rasterizer::rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& out) {
+void Rasterizer::rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& out, BackFaces back) {
   width_ = grid.width();
   height_ = grid.height();
   tile_columns_ = (width_ + tile_size - 1) / tile_size;
@@ -202,6 +202,7 @@ void Rasterizer::rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& ou
   project(mesh, grid);
   bin_front(mesh);
   draw_tiles(mesh, out, true);
+  if (back == BackFaces::LeaveAway) return;
   bin_back(mesh);
   draw_tiles(mesh, out, false);
 }

@@ -15,13 +15,17 @@ struct IdBuffer {
   Image<float> depth;  ///< object units along the view's direction from its centre; -inf for none
 };
 
+/// Do triangles that face away from the viewer show, and hide what is behind them?
+enum class BackFaces { Draw, LeaveAway };
+
 /// Our own rasteriser for orthographic charts: exact coverage (vertices snapped to 1/256 pixel,
 /// top-left rule), both faces of every triangle. The nearest one wins; of equally near ones a front
 /// face before a back face, then the first in file order, so the result does not depend on threads.
 /// Keeps its buffers between calls.
 class Rasterizer {
  public:
-  void rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& out);
+  void rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& out,
+                 BackFaces back = BackFaces::Draw);
 
   /// A vertex in the window: 1/256 pixels (x right, y down) and depth.
   struct Vertex {

@@ -32,14 +32,14 @@ std::vector<SeamEdge> seams_near(const Mesh& mesh, std::span<const SeamEdge> sea
   return near;
 }
 
-/// push() as the edit's `change`, and both sides of the seams kept together.
+/// Pushes, and keeps both sides of the seams together: see SeamFit.
 template <class Push>
-PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams, StorageAtlas& storage,
-                        const Push& push_all) {
+PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams, float kept,
+                        StorageAtlas& storage, const Push& push_all) {
   std::vector<NormalMap*> maps;
   for (StorageSet& set : storage.sets) maps.push_back(&set.normals);
   const std::vector<const NormalMap*> before(maps.begin(), maps.end());
-  const SeamFit fit(mesh, seams, before);
+  const SeamFit fit(mesh, seams, before, kept);
   const PushResult pushed = push_all();
   fit.apply(maps);
   return pushed;
@@ -51,7 +51,7 @@ void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge>
   if (edit.strength > 0.0F) {
     const EditingChart& chart = prepared.chart;
     const std::vector<SeamEdge> near = seams_near(mesh, seams, chart.grid, prepared.result.region);
-    prepared.report.pushed = push_and_fit(mesh, near, storage, [&] {
+    prepared.report.pushed = push_and_fit(mesh, near, 1.0F, storage, [&] {
       return push(mesh, chart, prepared.change(edit.mode), storage);
     });
     const ColorResult& colors = prepared.colors;
@@ -87,24 +87,27 @@ void add(const EditReport& other, EditReport& report) {
 
 /// All views see what was there before any of them; their mean is stored at once.
 EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const Mesh& mesh,
-                            std::span<const SeamEdge> seams, StorageAtlas& storage) {
+                            std::span<const SeamEdge> seams, SurfaceCover& cover,
+                            StorageAtlas& storage) {
   Stopwatch watch;
-  CoverOptions cover;
-  cover.views = surface.views;
-  cover.effective = effective_options(edit.effective, bounds(mesh).diagonal());
-  const std::vector<CoverView> views = cover_surface(mesh, cover);
+  const CoverOptions options{surface.views,
+                             effective_options(edit.effective, bounds(mesh).diagonal())};
+  if (cover.views.empty() || !(options == cover.options)) {
+    cover = {options, cover_surface(mesh, options)};
+  }
   EditReport report;
   report.times.pull = watch.lap();
   SurfaceBlend blend(storage);
-  for (const CoverView& view : views) {
-    const Extent part{view.low, view.high};
-    PreparedEdit prepared = prepare_edit(edit, view.view, mesh, storage, part);
+  for (const CoverView& view : cover.views) {
+    PreparedEdit prepared = prepare_edit(edit, view, mesh, storage);
     watch.lap();
     if (edit.strength > 0.0F) blend.add(mesh, prepared.chart, prepared.change(edit.mode), storage);
     prepared.report.times.push = watch.lap();
     add(prepared.report, report);
   }
-  report.pushed = push_and_fit(mesh, seams, storage, [&] { return blend.write(storage); });
+  // What reaches all of the surface leaves no seam, either.
+  report.pushed = push_and_fit(mesh, seams, 1.0F - edit.strength, storage,
+                               [&] { return blend.write(storage); });
   report.times.push += watch.lap();
   return report;
 }
@@ -112,9 +115,9 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
 }  // namespace
 
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      StorageAtlas& storage) {
+                      SurfaceCover& cover, StorageAtlas& storage) {
   if (const auto* surface = std::get_if<SurfaceView>(&edit.view)) {
-    return apply_to_surface(edit, *surface, mesh, seams, storage);
+    return apply_to_surface(edit, *surface, mesh, seams, cover, storage);
   }
   const View view = resolve(edit.view, mesh);
   PreparedEdit side = prepare_edit(edit, view, mesh, storage);

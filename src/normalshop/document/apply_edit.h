@@ -7,8 +7,9 @@
 namespace normalshop {
 
 /// The one way of an edit: view -> editing chart -> operator -> edited chart -> storage atlas.
-/// `seams` are those of the whole mesh. Throws before anything changes.
+/// `seams` are those of the whole mesh, `cover` is of no other mesh. Throws before anything
+/// changes.
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      StorageAtlas& storage);
+                      SurfaceCover& cover, StorageAtlas& storage);
 
 }  // namespace normalshop

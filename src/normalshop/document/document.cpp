@@ -30,7 +30,7 @@ Document::Document(Mesh mesh, std::vector<Maps> maps, const Progress& progress)
 }
 
 EditReport Document::apply(const Edit& edit) {
-  const EditReport report = apply_edit(edit, mesh_, seams_, storage_);
+  const EditReport report = apply_edit(edit, mesh_, seams_, cover_, storage_);
   log_.push_back(edit);
   return report;
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "normalshop/chart/cover.h"
 #include "normalshop/chart/push.h"
 #include "normalshop/chart/storage.h"
 #include "normalshop/core/progress.h"
@@ -59,6 +60,7 @@ class Document {
   Mesh mesh_;
   StorageAtlas storage_;
   std::vector<SeamEdge> seams_;
+  SurfaceCover cover_;
   std::vector<Edit> log_;
 };
 

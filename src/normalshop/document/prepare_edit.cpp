@@ -96,11 +96,11 @@ bool has_colors(const StorageAtlas& storage) {
 }
 
 /// Rasterises, pulls what the operator needs and weighs.
-EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas& storage,
-                         const ChartGrid& grid, float model_size) {
+EditingChart build_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                         const StorageAtlas& storage, const ChartGrid& grid, float model_size) {
   EditingChart chart;
   chart.grid = grid;
-  Rasterizer().rasterize(mesh, chart.grid, chart.ids);
+  cover.rasterize(mesh, chart.grid, chart.ids);
   PullOptions pulled;
   const EditOperator& operation = *edit.operation;
   pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep);
@@ -119,10 +119,10 @@ ColorResult run_colors(const Edit& edit, const OperatorInput& input, ColorView b
   return result;
 }
 
-EditPlace find_place(const Edit& edit, const View& view, const std::optional<Extent>& part,
-                     const Bounds& box) {
+EditPlace find_place(const Edit& edit, const CoverView& cover, const Bounds& box) {
+  const View& view = cover.view;
   EditPlace place{view_extent(view), model_extent(box, view), edit.operation->extent(edit.strokes)};
-  if (place.extent.empty()) place.extent = part.value_or(place.view);
+  if (place.extent.empty()) place.extent = {cover.low, cover.high};
   place.extent = intersect(place.extent, widened(place.model, 1e-3F * box.diagonal()));
   if (place.extent.empty()) {
     fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), place.model);
@@ -172,19 +172,20 @@ EffectiveOptions effective_options(const EffectiveAngles& angles, float model_si
   return options;
 }
 
-PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
-                          const StorageAtlas& storage, const std::optional<Extent>& part) {
+PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                          const StorageAtlas& storage) {
   Stopwatch watch;
   const Bounds box = bounds(mesh);
+  const View& view = cover.view;
   check_near_view(edit, view);
-  const EditPlace place = find_place(edit, view, part, box);
+  const EditPlace place = find_place(edit, cover, box);
   const CountedTexels counted =
       edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
   const float texel =
       texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high, counted);
   PreparedEdit prepared;
-  prepared.chart =
-      build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
+  prepared.chart = build_chart(edit, cover, mesh, storage, choose_grid(edit, view, place, texel),
+                               box.diagonal());
   EditReport& report = prepared.report;
   const ChartGrid& grid = prepared.chart.grid;
   report.views = 1;
@@ -196,6 +197,12 @@ PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
   operate(edit, place, prepared);
   report.times.operate = watch.lap();
   return prepared;
+}
+
+PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
+                          const StorageAtlas& storage) {
+  const Extent all = view_extent(view);
+  return prepare_edit(edit, CoverView{view, all.low, all.high, nullptr}, mesh, storage);
 }
 
 }  // namespace normalshop

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
-
-#include "normalshop/chart/effective.h"
+#include "normalshop/chart/cover.h"
 #include "normalshop/document/document.h"
 #include "normalshop/document/operate.h"
 
@@ -29,11 +27,12 @@ struct PreparedEdit {
   }
 };
 
-/// `part` of the view, in units from its centre: where an edit of the whole view is wanted. Throws
-/// InvalidInput, naming the field, for what does not fit the surface that the view shows.
+/// Throws InvalidInput, naming the field, for what does not fit the surface that the view shows.
 PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
-                          const StorageAtlas& storage,
-                          const std::optional<Extent>& part = std::nullopt);
+                          const StorageAtlas& storage);
+/// An edit of the whole view, made in its part and on what it shows of the mesh.
+PreparedEdit prepare_edit(const Edit& edit, const CoverView& view, const Mesh& mesh,
+                          const StorageAtlas& storage);
 
 /// The effective chart that an edit asks for, on a model of that size.
 EffectiveOptions effective_options(const EffectiveAngles& angles, float model_size);

@@ -20,7 +20,7 @@ Vec3f direction_field(const FieldReader& reader) {
 }
 
 constexpr std::string_view surface_name = "surface";
-constexpr int most_views = 192;
+constexpr int most_views = 96;
 
 ViewSpec read_view(const FieldReader& reader) {
   std::vector<std::string_view> names = names_list<NamedView>();

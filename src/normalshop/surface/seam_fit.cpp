@@ -133,7 +133,7 @@ Read SeamFit::Solver::read(const Side& side) const {
 Vec3d SeamFit::Solver::target(const Sample& sample) const {
   const Vec3d difference = read(sample.sides[0]).normal - read(sample.sides[1]).normal;
   const double size = difference.norm();
-  const auto allowed = static_cast<double>(sample.before);
+  const auto allowed = static_cast<double>(sample.allowed);
   return size > allowed ? Vec3d(allowed / size * difference) : difference;
 }
 
@@ -281,7 +281,7 @@ std::size_t SeamFit::Solver::run(std::span<NormalMap* const> maps) {
   return texel_of_.size();
 }
 
-SeamFit::SeamFit(const Mesh& mesh, std::span<const SeamEdge> edges, NormalMaps maps) {
+SeamFit::SeamFit(const Mesh& mesh, std::span<const SeamEdge> edges, NormalMaps maps, float kept) {
   std::vector<std::uint64_t> keys;
   const std::vector<SeamSample> places = sample_seams(mesh, edges, maps);
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -294,7 +294,7 @@ SeamFit::SeamFit(const Mesh& mesh, std::span<const SeamEdge> edges, NormalMaps m
     }
   }
   collect_texels(keys, maps);
-  remember_reads();
+  remember_reads(kept);
 }
 
 /// The side's texels become places in `keys`; collect_texels() makes them indices.
@@ -354,7 +354,7 @@ void SeamFit::collect_texels(const std::vector<std::uint64_t>& keys, NormalMaps 
   }
 }
 
-void SeamFit::remember_reads() {
+void SeamFit::remember_reads(float kept) {
   for (Sample& s : samples_) {
     std::array<Vec3f, 2> normals{Vec3f::Zero(), Vec3f::Zero()};
     for (std::size_t k = 0; k < 2; ++k) {
@@ -364,7 +364,7 @@ void SeamFit::remember_reads() {
       }
       normals[k] = TangentFrame{s.sides[k].to_object}.object_normal(sum);
     }
-    s.before = (normals[0] - normals[1]).norm();
+    s.allowed = kept * (normals[0] - normals[1]).norm();
   }
 }
 

@@ -27,7 +27,9 @@ namespace normalshop {
 class SeamFit {
  public:
   /// Before the edit: remembers what is read along the edges. Every texture set needs its map.
-  SeamFit(const Mesh& mesh, std::span<const SeamEdge> edges, NormalMaps maps);
+  /// `kept`, 0 to 1: how much of the angle before both sides may keep; 0 closes the seams as far as
+  /// the edit changed texels.
+  SeamFit(const Mesh& mesh, std::span<const SeamEdge> edges, NormalMaps maps, float kept = 1.0F);
 
   /// After it. Returns how many texels that are read along the seams the edit changed: those that
   /// may have moved. The result does not depend on threads.
@@ -43,7 +45,7 @@ class SeamFit {
   struct Sample {
     std::array<Side, 2> sides;
     float weight = 1.0F;
-    float before = 0.0F;  ///< distance of both sides' unit object-space normals
+    float allowed = 0.0F;  ///< distance of both sides' unit object-space normals
   };
   struct Texel {
     std::uint32_t set;
@@ -57,7 +59,7 @@ class SeamFit {
   void add_sample(const Mesh& mesh, const SeamSample& place, float weight, NormalMaps maps,
                   std::vector<std::uint64_t>& keys);
   void collect_texels(const std::vector<std::uint64_t>& keys, NormalMaps maps);
-  void remember_reads();
+  void remember_reads(float kept);
 
   std::vector<Sample> samples_;
   std::vector<Texel> texels_;
