@@ -95,7 +95,7 @@ class Packer {
   Packing run() {
     Packing best = first_that_fits();
     // Many shapes fill the square better at once, and take longer.
-    const int tries = std::clamp(4000 / static_cast<int>(shapes_.size()), 3, 24);
+    const int tries = std::clamp(3000 / static_cast<int>(shapes_.size()), 3, 24);
     double fit = room_;
     double step = 1.02;
     int failures = 0;

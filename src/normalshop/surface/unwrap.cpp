@@ -177,7 +177,7 @@ UnwrapReport unwrap(Mesh& mesh, const UnwrapOptions& options, const Progress& pr
   check_options(options);
   check_mesh(mesh);
   progress.at(0.0, "reading the surface");
-  const Surface surface = unwrapping::make_surface(mesh, options.hard_edges);
+  const Surface surface = unwrapping::make_surface(mesh, !options.across_hard_edges);
   if (std::none_of(surface.area.begin(), surface.area.end(), [](double a) { return a > 0.0; })) {
     throw InvalidInput("unwrap: no triangle of the mesh has an area");
   }

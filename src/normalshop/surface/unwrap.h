@@ -12,7 +12,7 @@ namespace normalshop {
 struct UnwrapOptions {
   float stretch = 1.2F;
   float angle = 75.0F;
-  bool hard_edges = true;
+  bool across_hard_edges = false;
   int size = 4096;
   int gutter = 4;
 
@@ -23,9 +23,9 @@ struct UnwrapOptions {
               "fewer charts"),
         field("angle", &UnwrapOptions::angle, "degrees", 1, 85,
               "Largest angle between a chart's direction and the normal of a triangle in it"),
-        field("hard_edges", &UnwrapOptions::hard_edges,
-              "Charts end at hard edges, where the base normals of both sides differ by 15 degrees "
-              "or more, unless most edges are hard"),
+        field("across_hard_edges", &UnwrapOptions::across_hard_edges,
+              "Charts may run across hard edges, where the base normals of both sides differ by 15 "
+              "degrees or more; where most edges are hard they always do"),
         field("size", &UnwrapOptions::size, "pixels", 64, 16384,
               "Side of the map that the atlas is made for, in texels"),
         field("gutter", &UnwrapOptions::gutter, "pixels", 0, 64,
