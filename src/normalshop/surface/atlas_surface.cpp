@@ -121,7 +121,7 @@ Vec3d facing_direction(const Surface& surface, std::span<const std::uint32_t> tr
   Vec3d sum = Vec3d::Zero();
   for (const std::uint32_t t : triangles) sum += surface.area[t] * surface.normal[t];
   const double length = sum.norm();
-  const Vec3d mean = length > 0.0 ? Vec3d(sum / length) : surface.normal[triangles.front()];
+  Vec3d mean = length > 0.0 ? Vec3d(sum / length) : surface.normal[triangles.front()];
   if (mean.isZero()) return Vec3d::UnitZ();
   Vec3d direction = mean;
   for (int step = 0; step < most_steps; ++step) {
