@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "normalshop/surface/detail/atlas_packing.h"
@@ -81,17 +82,43 @@ BitPicture dilated(const BitPicture& cells, int rim) {
   return all;
 }
 
-void collect_runs(const BitPicture& cells, PackMask& mask) {
-  mask.rim_start.assign(1, 0);
-  for (int y = 0; y < cells.height(); ++y) {
-    for (int x = 0; x < cells.width(); ++x) {
-      if (!cells.at(x, y)) continue;
-      const int begin = x;
-      while (x < cells.width() && cells.at(x, y)) ++x;
-      mask.rim.push_back({begin, x});
-    }
-    mask.rim_start.push_back(static_cast<std::uint32_t>(mask.rim.size()));
+/// The first column from x on that is set, or free, at most `width`.
+int next_column(const std::uint64_t* row, int x, int width, bool set) {
+  while (x < width) {
+    const std::uint64_t word = set ? row[x / 64] : ~row[x / 64];
+    const std::uint64_t rest = word >> (x % 64);
+    if (rest != 0) return std::min(width, x + std::countr_zero(rest));
+    x = (x / 64 + 1) * 64;
   }
+  return width;
+}
+
+RunRows runs_of(const BitPicture& cells) {
+  RunRows rows;
+  rows.start.reserve(static_cast<std::size_t>(cells.height()) + 1);
+  for (int y = 0; y < cells.height(); ++y) {
+    const std::uint64_t* row = cells.row(y);
+    for (int x = next_column(row, 0, cells.width(), true); x < cells.width();) {
+      const int end = next_column(row, x, cells.width(), false);
+      rows.runs.push_back({x, end});
+      x = next_column(row, end, cells.width(), true);
+    }
+    rows.start.push_back(static_cast<std::uint32_t>(rows.runs.size()));
+  }
+  return rows;
+}
+
+RunRows upside_down(const RunRows& rows, int width) {
+  RunRows turned_rows;
+  turned_rows.runs.reserve(rows.runs.size());
+  for (auto run = rows.runs.rbegin(); run != rows.runs.rend(); ++run) {
+    turned_rows.runs.push_back({width - run->end, width - run->begin});
+  }
+  turned_rows.start.clear();
+  for (auto start = rows.start.rbegin(); start != rows.start.rend(); ++start) {
+    turned_rows.start.push_back(rows.start.back() - *start);
+  }
+  return turned_rows;
 }
 
 }  // namespace
@@ -107,14 +134,26 @@ PackMask make_mask(const PackShape& shape, const Vec2d& turn, double scale, int 
   }
   PackMask mask;
   mask.origin = low - Vec2d::Constant(rim);
-  mask.cells = BitPicture(static_cast<int>(high.x() - low.x()) + 1 + 2 * rim,
-                          static_cast<int>(high.y() - low.y()) + 1 + 2 * rim);
+  mask.width = static_cast<int>(high.x() - low.x()) + 1 + 2 * rim;
+  mask.height = static_cast<int>(high.y() - low.y()) + 1 + 2 * rim;
+  BitPicture cells(mask.width, mask.height);
   for (std::size_t i = 0; i + 2 < places.size(); i += 3) {
-    mark_triangle(mask.cells, {places[i] - mask.origin, places[i + 1] - mask.origin,
-                               places[i + 2] - mask.origin});
+    mark_triangle(
+        cells, {places[i] - mask.origin, places[i + 1] - mask.origin, places[i + 2] - mask.origin});
   }
-  collect_runs(dilated(mask.cells, rim), mask);
+  mask.cells = runs_of(cells);
+  mask.rim = runs_of(dilated(cells, rim));
   return mask;
+}
+
+PackMask upside_down(const PackMask& mask) {
+  PackMask turned_mask;
+  turned_mask.width = mask.width;
+  turned_mask.height = mask.height;
+  turned_mask.cells = upside_down(mask.cells, mask.width);
+  turned_mask.rim = upside_down(mask.rim, mask.width);
+  turned_mask.origin = -mask.origin - Vec2d(mask.width, mask.height);
+  return turned_mask;
 }
 
 }  // namespace normalshop::unwrapping

@@ -95,7 +95,7 @@ class Packer {
   Packing run() {
     Packing best = first_that_fits();
     // Many shapes fill the square better at once, and take longer.
-    const int tries = std::clamp(3000 / static_cast<int>(shapes_.size()), 3, 24);
+    const int tries = std::clamp(2000 / static_cast<int>(shapes_.size()), 3, 12);
     double fit = room_;
     double step = 1.02;
     int failures = 0;
@@ -119,6 +119,8 @@ class Packer {
 
  private:
   static constexpr int order_count = 3;
+  /// Shapes whose masks are made at a time.
+  static constexpr std::size_t block = 16;
 
   Packing first_that_fits() {
     const double area = std::accumulate(areas_.begin(), areas_.end(), 0.0);
@@ -142,6 +144,8 @@ class Packer {
     return order;
   }
 
+  using Masks = std::array<PackMask, turn_count>;
+
   /// All shapes into a strip that may be `most` cells high. Afterwards room_ tells by which factor
   /// they could be larger, or below 1 must be smaller, as far as the height says.
   Packing pack_at(double scale, int way, int most) {
@@ -149,34 +153,54 @@ class Packer {
     Packing packing;
     packing.scale = scale;
     packing.places.resize(shapes_.size());
-    for (const std::size_t shape : order_by(way)) {
-      if (place(shape, scale, most + rim_, strip, packing.places[shape])) continue;
-      room_ = 0.8;
-      return packing;
+    const std::vector<std::size_t> order = order_by(way);
+    for (std::size_t first = 0; first < order.size(); first += block) {
+      const auto shapes = std::span(order).subspan(first, std::min(block, order.size() - first));
+      const std::vector<Masks> masks = masks_of(shapes, scale);
+      for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (place(masks[i], shapes[i], most + rim_, strip, packing)) continue;
+        room_ = 0.8;
+        return packing;
+      }
     }
     room_ = std::sqrt(strip_width / static_cast<double>(std::max(1, strip.top() - rim_)));
     return packing;
   }
 
+  std::vector<Masks> masks_of(std::span<const std::size_t> shapes, double scale) const {
+    std::vector<Masks> masks(shapes.size());
+    constexpr std::size_t half = turn_count / 2;
+    parallel_for(shapes.size() * half, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t shape = shapes[i / half];
+        const Vec2d turn = combined(boxes_[shape].turn, turn_by(i % half));
+        PackMask& mask = masks[i / half][i % half];
+        mask = make_mask(shapes_[shape], turn, scale, rim_);
+        masks[i / half][i % half + half] = upside_down(mask);
+      }
+    });
+    return masks;
+  }
+
   /// Tries all turns; the first of those that reach lowest is taken.
-  bool place(std::size_t shape, double scale, int most, PackStrip& strip, PackPlace& found) const {
-    std::array<PackMask, turn_count> masks;
+  bool place(const Masks& masks, std::size_t shape, int most, PackStrip& strip,
+             Packing& packing) const {
     std::array<PackStrip::Place, turn_count> places;
     std::atomic<int> limit{most};
     parallel_for(turn_count, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        masks[i] = make_mask(shapes_[shape], combined(boxes_[shape].turn, turn_by(i)), scale, rim_);
         places[i] = strip.find(masks[i], limit);
-        if (places[i].found) sink(limit, places[i].y + masks[i].height());
+        if (places[i].found) sink(limit, places[i].y + masks[i].height);
       }
     });
-    const auto top = [&](std::size_t i) { return places[i].y + masks[i].height(); };
+    const auto top = [&](std::size_t i) { return places[i].y + masks[i].height; };
     std::size_t best = turn_count;
     for (std::size_t i = 0; i < turn_count; ++i) {
       if (places[i].found && (best == turn_count || top(i) < top(best))) best = i;
     }
     if (best == turn_count) return false;
     strip.put(masks[best], places[best]);
+    PackPlace& found = packing.places[shape];
     found.turn = combined(boxes_[shape].turn, turn_by(best));
     // Rims reach beyond the square, half a gutter of each lies within.
     found.offset =

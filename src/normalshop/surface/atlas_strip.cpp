@@ -37,82 +37,59 @@ int gap_of(const std::uint64_t* row, int width) {
 
 }  // namespace
 
-StripRow::StripRow(int width) : longest_gap(width) {
-  // Words beyond the end stay 0, so that shifts may read them.
-  const auto words = static_cast<std::size_t>(2 * ((width + 63) / 64) + 1);
-  smeared.assign(static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(width))),
-                 std::vector<std::uint64_t>(words, 0));
-}
-
-void StripRow::update(int width) {
-  for (std::size_t level = 1; level < smeared.size(); ++level) {
-    const std::vector<std::uint64_t>& from = smeared[level - 1];
-    for (std::size_t i = 0; i < static_cast<std::size_t>((width + 63) / 64); ++i) {
-      smeared[level][i] = from[i] | word_at(from.data(), i, 1 << (level - 1));
-    }
-  }
-  longest_gap = gap_of(smeared[0].data(), width);
-}
-
-namespace {
-
 /// Finds where a mask fits in a row of places.
 class FitFinder {
  public:
-  FitFinder(const PackMask& mask, int width)
-      : mask_(mask),
-        places_(width - mask.width() + 1),
-        free_(static_cast<std::size_t>((width + 63) / 64)) {
-    order_.resize(static_cast<std::size_t>(mask.height()));
-    longest_.resize(order_.size(), 0);
-    for (int y = 0; y < mask.height(); ++y) {
-      order_[static_cast<std::size_t>(y)] = y;
+  FitFinder(const PackMask& mask, const PackStrip& strip)
+      : mask_(mask), strip_(strip), places_(strip.width_ - mask.width + 1), free_(strip.words_) {
+    longest_.resize(static_cast<std::size_t>(mask.height), 0);
+    for (int y = 0; y < mask.height; ++y) {
       for_each_run(y, [&](const BitRun& run) {
         int& longest = longest_[static_cast<std::size_t>(y)];
         longest = std::max(longest, run.end - run.begin);
         return true;
       });
     }
-    // Long runs rule out most, rows far from each other more than neighbours.
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](int a, int b) { return spread_rank(a) < spread_rank(b); });
-    const auto widest = std::max_element(order_.begin(), order_.end(),
-                                         [&](int a, int b) { return longest(a) < longest(b); });
-    std::rotate(order_.begin(), widest, widest + 1);
+    order_rows();
   }
 
   /// The first place in that row, or -1.
-  int find(const std::vector<StripRow>& rows, int y) {
-    const auto used = [&](int r) { return static_cast<std::size_t>(y + r) < rows.size(); };
-    const auto row = [&](int r) -> const StripRow& {
-      return rows[static_cast<std::size_t>(y + r)];
-    };
-    for (const int r : order_) {
-      if (used(r) && row(r).longest_gap < longest(r)) return -1;
+  int find(int y) {
+    const auto rows = static_cast<int>(strip_.gaps_.size());
+    const int* gaps = strip_.gaps_.data() + std::min(y, rows);
+    for (int r = 0, end = std::min(mask_.height, rows - y); r < end; ++r) {
+      if (gaps[r] < longest(r)) return -1;
     }
     start();
     for (const int r : order_) {
-      if (!used(r)) continue;
-      if (!for_each_run(r, [&](const BitRun& run) { return exclude(row(r), run); })) return -1;
+      if (y + r >= rows) continue;
+      const auto row = static_cast<std::size_t>(y + r);
+      if (!for_each_run(r, [&](const BitRun& run) { return exclude(row, run); })) return -1;
     }
     return static_cast<int>(first_) * 64 + std::countr_zero(free_[first_]);
   }
 
  private:
-  /// Rows in the order of their bits from the lowest on: halves, quarters, eighths.
-  static std::uint32_t spread_rank(int row) {
-    std::uint32_t rank = 0;
-    for (int bit = 0; bit < 16; ++bit)
-      rank = rank << 1 | (static_cast<std::uint32_t>(row) >> bit & 1U);
-    return rank;
+  /// The longest run first, which rules out most; then rows far from each other, whose answers
+  /// differ more than neighbours': halves, quarters, eighths.
+  void order_rows() {
+    const auto height = static_cast<std::uint32_t>(mask_.height);
+    const int bits = std::bit_width(height);
+    for (std::uint32_t i = 0; i < std::uint32_t{1} << bits; ++i) {
+      std::uint32_t row = 0;
+      for (int bit = 0; bit < bits; ++bit) row = row << 1 | (i >> bit & 1U);
+      if (row < height) order_.push_back(static_cast<int>(row));
+    }
+    const auto widest = std::max_element(order_.begin(), order_.end(),
+                                         [&](int a, int b) { return longest(a) < longest(b); });
+    std::rotate(order_.begin(), widest, widest + 1);
   }
   int longest(int row) const { return longest_[static_cast<std::size_t>(row)]; }
 
   template <class Visit>
   bool for_each_run(int row, const Visit& visit) const {
-    const auto y = static_cast<std::size_t>(row);
-    for (std::uint32_t i = mask_.rim_start[y]; i < mask_.rim_start[y + 1]; ++i) {
-      if (!visit(mask_.rim[i])) return false;
+    for (const BitRun& run : mask_.rim.of(row)) {
+      if (!visit(run)) return false;
     }
     return true;
   }
@@ -127,9 +104,9 @@ class FitFinder {
   }
 
   /// Takes the places away at which the run meets a used cell; false: none is left.
-  bool exclude(const StripRow& row, const BitRun& run) {
+  bool exclude(std::size_t row, const BitRun& run) {
     const int level = std::bit_width(static_cast<unsigned>(run.end - run.begin)) - 1;
-    const std::uint64_t* smeared = row.smeared[static_cast<std::size_t>(level)].data();
+    const std::uint64_t* smeared = strip_.smeared(row, static_cast<std::size_t>(level));
     const int second = run.end - (1 << level);
     for (std::size_t i = first_; i <= last_; ++i) {
       if (free_[i] == 0) continue;
@@ -141,6 +118,7 @@ class FitFinder {
   }
 
   const PackMask& mask_;
+  const PackStrip& strip_;
   int places_;
   std::vector<std::uint64_t> free_;  ///< bits of places along a row
   std::size_t first_ = 0;            ///< words of free_ that are not 0
@@ -149,31 +127,53 @@ class FitFinder {
   std::vector<int> longest_;
 };
 
-}  // namespace
+PackStrip::PackStrip(int width)
+    : width_(width),
+      words_(static_cast<std::size_t>((width + 63) / 64)),
+      stride_(words_ + 2),
+      levels_(static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(width)))) {}
 
 PackStrip::Place PackStrip::find(const PackMask& mask, const std::atomic<int>& limit) const {
-  if (mask.width() > width_) return {};
-  FitFinder finder(mask, width_);
-  for (int y = 0; y + mask.height() <= limit; ++y) {
-    const int x = finder.find(rows_, y);
+  if (mask.width > width_) return {};
+  FitFinder finder(mask, *this);
+  for (int y = 0; y + mask.height <= limit; ++y) {
+    const int x = finder.find(y);
     if (x >= 0) return {x, y, true};
   }
   return {};
 }
 
-void PackStrip::put(const PackMask& mask, const Place& place) {
-  top_ = std::max(top_, place.y + mask.height());
-  while (rows_.size() < static_cast<std::size_t>(top_)) rows_.emplace_back(width_);
-  for (int y = 0; y < mask.height(); ++y) {
-    StripRow& row = rows_[static_cast<std::size_t>(place.y + y)];
-    bool changed = false;
-    for (int x = 0; x < mask.width(); ++x) {
-      if (!mask.cells.at(x, y)) continue;
-      row.smeared[0][static_cast<std::size_t>((place.x + x) / 64)] |= std::uint64_t{1}
-                                                                      << ((place.x + x) % 64);
-      changed = true;
+void PackStrip::add_row() {
+  smeared_.resize(smeared_.size() + levels_ * stride_, 0);
+  gaps_.push_back(width_);
+}
+
+void PackStrip::update(std::size_t row) {
+  for (std::size_t level = 1; level < levels_; ++level) {
+    const std::uint64_t* from = smeared(row, level - 1);
+    std::uint64_t* to = smeared(row, level);
+    const int shift = 1 << (level - 1);
+    for (std::size_t i = 0; i < words_; ++i) {
+      const bool inside = i + static_cast<std::size_t>(shift / 64) < words_;
+      to[i] = from[i] | (inside ? word_at(from, i, shift) : 0);
     }
-    if (changed) row.update(width_);
+  }
+  gaps_[row] = gap_of(smeared(row, 0), width_);
+}
+
+void PackStrip::put(const PackMask& mask, const Place& place) {
+  top_ = std::max(top_, place.y + mask.height);
+  while (gaps_.size() < static_cast<std::size_t>(top_)) add_row();
+  for (int y = 0; y < mask.height; ++y) {
+    const auto row = static_cast<std::size_t>(place.y + y);
+    const auto runs = mask.cells.of(y);
+    std::uint64_t* words = smeared(row, 0);
+    for (const BitRun& run : runs) {
+      for (int x = place.x + run.begin; x < place.x + run.end; ++x) {
+        words[x / 64] |= std::uint64_t{1} << (x % 64);
+      }
+    }
+    if (!runs.empty()) update(row);
   }
 }
 

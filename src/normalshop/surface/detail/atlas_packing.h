@@ -46,7 +46,6 @@ class BitPicture {
   const std::uint64_t* row(int y) const {
     return bits_.data() + static_cast<std::ptrdiff_t>(y) * words_;
   }
-  bool at(int x, int y) const { return (row(y)[x / 64] >> (x % 64) & 1U) != 0; }
   /// Sets columns begin to end - 1.
   void set(int y, int begin, int end);
 
@@ -63,36 +62,37 @@ struct BitRun {
   int end;
 };
 
+/// A picture as runs, row by row.
+struct RunRows {
+  std::vector<BitRun> runs;
+  std::vector<std::uint32_t> start{0};  ///< per row its first run, and the number of all
+
+  std::span<const BitRun> of(int row) const {
+    const auto y = static_cast<std::size_t>(row);
+    return std::span(runs).subspan(start[y], start[y + 1] - start[y]);
+  }
+};
+
 /// A shape as the cells that it touches, with its rim of free cells around it.
 struct PackMask {
-  BitPicture cells;  ///< as large as the rim needs
-  /// With the rim, row by row: the runs of row y are rim[rim_start[y]] to rim[rim_start[y + 1] -
-  /// 1].
-  std::vector<BitRun> rim;
-  std::vector<std::uint32_t> rim_start;
-  Vec2d origin{0.0, 0.0};  ///< place of the cells' corner, in cells
-
-  int width() const { return cells.width(); }
-  int height() const { return cells.height(); }
+  int width = 0;  ///< with the rim
+  int height = 0;
+  RunRows cells;
+  RunRows rim;             ///< cells and rim
+  Vec2d origin{0.0, 0.0};  ///< place of the picture's corner, in cells
 };
 
 /// The shape turned and scaled to cells. `rim`: cells around it that others may not touch.
 PackMask make_mask(const PackShape& shape, const Vec2d& turn, double scale, int rim);
+/// The same shape turned by 180 degrees.
+PackMask upside_down(const PackMask& mask);
 
-/// A row of a strip.
-struct StripRow {
-  explicit StripRow(int width);
-  void update(int width);
-
-  /// Bit x of level k: one of the cells x to x + 2^k - 1 is used.
-  std::vector<std::vector<std::uint64_t>> smeared;
-  int longest_gap;
-};
+class FitFinder;
 
 /// Places masks in a strip of a given width, one after the other, as low as they go.
 class PackStrip {
  public:
-  explicit PackStrip(int width) : width_(width) {}
+  explicit PackStrip(int width);
 
   struct Place {
     int x = 0;
@@ -107,9 +107,24 @@ class PackStrip {
   int top() const { return top_; }
 
  private:
+  friend class FitFinder;
+  void add_row();
+  void update(std::size_t row);
+  std::uint64_t* smeared(std::size_t row, std::size_t level) {
+    return smeared_.data() + (row * levels_ + level) * stride_;
+  }
+  const std::uint64_t* smeared(std::size_t row, std::size_t level) const {
+    return smeared_.data() + (row * levels_ + level) * stride_;
+  }
+
   int width_;
   int top_ = 0;
-  std::vector<StripRow> rows_;
+  std::size_t words_;
+  std::size_t stride_;  ///< words beyond the end stay 0, so that shifts may read them
+  std::size_t levels_;
+  /// Bit x of a row's level k: one of the cells x to x + 2^k - 1 is used.
+  std::vector<std::uint64_t> smeared_;
+  std::vector<int> gaps_;  ///< per row, the longest of free cells
 };
 
 }  // namespace normalshop::unwrapping
