@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "../support/atlas_check.h"
@@ -151,6 +152,8 @@ TEST(Unwrap, TorusAndBumpsKeepToTheBounds) {
 }
 
 TEST(Unwrap, HardEdgesAreBorders) {
+  Mesh box = bare(cube(1));
+  EXPECT_EQ(unwrap_well(box).charts, 6U);
   Mesh mesh = bare(cube(4));
   const UnwrapReport report = unwrap_well(mesh);
   EXPECT_EQ(report.charts, 6U);
@@ -169,7 +172,7 @@ TEST(Unwrap, ChartsRunAcrossHardEdgesOnWish) {
   UnwrapOptions options;
   options.across_hard_edges = true;
   EXPECT_LT(unwrap_well(mesh, options).charts, 6U);
-  // Where every edge is hard, none is.
+  // Facets have hard edges all around, and are no charts each.
   Mesh facets = bare(uv_sphere(24, 12));
   compute_normals(facets, NormalsRule::Flat);
   EXPECT_LE(unwrap_well(facets).charts, 10U);
@@ -335,6 +338,28 @@ TEST(Unwrap, SoupOfTrianglesSurvives) {
   for (const Vec2f& uv : mesh.uvs) EXPECT_TRUE(uv.minCoeff() >= 0.0F && uv.maxCoeff() <= 1.0F);
 }
 
+TEST(Unwrap, NeedlesFit) {
+  Mesh mesh;
+  mesh.positions = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {1.0F, 1e-5F, 0.0F}};
+  mesh.triangles = {{0, 1, 2}};
+  UnwrapReport report = unwrap(mesh);
+  EXPECT_EQ(report.charts, 1U);
+  EXPECT_GT((mesh.uvs[1] - mesh.uvs[0]).norm(), 0.9F);
+  // A thousand loose ones.
+  mesh = {};
+  for (int i = 0; i < 1000; ++i) {
+    const auto y = static_cast<float>(i);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {Vec3f(0.0F, y, 0.0F), Vec3f(40.0F, y, 0.0F),
+                                                 Vec3f(40.0F, y + 0.5F, 1.0F)});
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  report = unwrap(mesh);
+  EXPECT_EQ(report.charts, 1000U);
+  EXPECT_EQ(report.overlaps, 0U);
+  EXPECT_EQ(picture_of_atlas(mesh, atlas_points).overlapping, 0U);
+}
+
 TEST(Unwrap, TangentsGoAndTheNameStays) {
   Mesh mesh = cube(2);
   ASSERT_FALSE(mesh.tangents.empty());
@@ -381,6 +406,9 @@ TEST(Unwrap, RefusesWhatCannotBeUnwrapped) {
   options = {};
   options.gutter = -1;
   expect_refusal(plane_grid(1), options, "gutter must be from 0 to 64");
+  options.size = 64;
+  options.gutter = 64;
+  expect_refusal(cube(1), options, "6 charts do not fit");
 }
 
 TEST(Unwrap, CancelledLeavesTheMesh) {

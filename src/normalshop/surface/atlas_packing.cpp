@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/surface/detail/convex_hull.h"
 
@@ -16,6 +17,7 @@ namespace {
 constexpr int strip_width = 1024;
 /// Of the square that shapes cover at the first try; about what they come to.
 constexpr double first_fill = 0.68;
+constexpr int most_first_tries = 60;
 constexpr int no_limit = 1 << 20;
 
 constexpr std::size_t turn_count = 12;
@@ -32,10 +34,11 @@ Vec2d combined(const Vec2d& a, const Vec2d& b) {
   return {a.x() * b.x() - a.y() * b.y(), a.y() * b.x() + a.x() * b.y()};
 }
 
-/// A shape's smallest box: how to turn it upright, and its area.
+/// A shape's smallest box: how to turn it upright, its area and its longer side.
 struct ShapeBox {
   Vec2d turn{1.0, 0.0};
   double area = 0.0;
+  double longest = 0.0;
 };
 
 ShapeBox smallest_box(const PackShape& shape) {
@@ -57,7 +60,7 @@ ShapeBox smallest_box(const PackShape& shape) {
       height = std::max(height, cross(along, from));
     }
     const double area = (right - left) * height;
-    if (area < best.area) best = {{along.x(), -along.y()}, area};
+    if (area < best.area) best = {{along.x(), -along.y()}, area, std::max(right - left, height)};
   }
   return best;
 }
@@ -90,6 +93,13 @@ class Packer {
         boxes_[i] = smallest_box(shapes[i]);
       }
     });
+    const auto longest = std::max_element(
+        boxes_.begin(), boxes_.end(),
+        [](const ShapeBox& a, const ShapeBox& b) { return a.longest < b.longest; });
+    largest_scale_ = 1.42 * strip_width / longest->longest;
+    // However small the shapes, each takes a cell and its share of the rims.
+    const double least = (1.0 + rim_) * (1.0 + rim_) * static_cast<double>(shapes.size());
+    if (shapes.size() > 1 && least > 0.8 * strip_width * strip_width) refuse();
   }
 
   Packing run() {
@@ -100,7 +110,9 @@ class Packer {
     double step = 1.02;
     int failures = 0;
     for (int i = 0; i < tries; ++i) {
-      Packing packing = pack_at(best.scale * std::max(step, fit), i % order_count, strip_width);
+      const double scale = best.scale * std::max(step, fit);
+      if (scale > largest_scale_ && fit <= step) break;
+      Packing packing = pack_at(std::min(scale, largest_scale_), i % order_count, strip_width);
       if (room_ >= 1.0) {
         best = std::move(packing);
         fit = room_;
@@ -124,12 +136,20 @@ class Packer {
 
   Packing first_that_fits() {
     const double area = std::accumulate(areas_.begin(), areas_.end(), 0.0);
-    double scale = std::sqrt(first_fill * strip_width * strip_width / area);
-    while (true) {
+    double scale =
+        std::min(std::sqrt(first_fill * strip_width * strip_width / area), largest_scale_);
+    for (int i = 0; i < most_first_tries; ++i) {
       Packing packing = pack_at(scale, 0, no_limit);
       if (room_ >= 1.0) return packing;
       scale *= 0.995 * room_;
     }
+    refuse();
+  }
+
+  [[noreturn]] void refuse() const {
+    throw InvalidInput("unwrap: " + std::to_string(shapes_.size()) +
+                       " charts do not fit with this gutter; give a smaller gutter or a larger "
+                       "size");
   }
 
   /// Large shapes first; what is large is told in different ways, one of which packs best.
@@ -213,6 +233,7 @@ class Packer {
   int rim_;
   std::vector<double> areas_;
   std::vector<ShapeBox> boxes_;
+  double largest_scale_ = 0.0;  ///< at which the longest shape spans the square's diagonal
   double room_ = 1.0;
 };
 

@@ -16,6 +16,9 @@ constexpr std::size_t surface_grain = 4096;
 /// Heights below this share of the model's extent are rounding of positions.
 constexpr double least_height = 1e-7;
 constexpr int smoothing_steps = 4;
+/// Hard edges that cut off more parts than this, and of fewer triangles, bound facets.
+constexpr std::size_t few_parts = 64;
+constexpr std::size_t small_part = 8;
 
 bool is_hard(const Mesh& mesh, std::uint32_t edge, std::uint32_t across) {
   static const float same = std::cos(hard_edge_degrees * 0.017453292519943295F);
@@ -23,17 +26,38 @@ bool is_hard(const Mesh& mesh, std::uint32_t edge, std::uint32_t across) {
          mesh.normals[next_corner(edge)].dot(mesh.normals[across]) <= same;
 }
 
-/// Hard edges become borders; where most are hard, the normals are those of facets.
-void cut_hard_edges(const Mesh& mesh, std::vector<std::uint32_t>& across) {
-  std::vector<std::uint32_t> hard;
-  std::size_t edges = 0;
-  for (std::uint32_t edge = 0; edge < across.size(); ++edge) {
-    if (across[edge] == none) continue;
-    ++edges;
-    if (is_hard(mesh, edge, across[edge])) hard.push_back(edge);
+/// Parts that hang together.
+std::size_t count_parts(const std::vector<std::uint32_t>& across) {
+  std::vector<bool> seen(across.size() / 3, false);
+  std::vector<std::uint32_t> open;
+  std::size_t count = 0;
+  for (std::uint32_t first = 0; first < seen.size(); ++first) {
+    if (seen[first]) continue;
+    ++count;
+    seen[first] = true;
+    open.push_back(first);
+    while (!open.empty()) {
+      const std::uint32_t t = open.back();
+      open.pop_back();
+      for (std::uint32_t edge = 3 * t; edge < 3 * t + 3; ++edge) {
+        const std::uint32_t next = across[edge] == none ? t : across[edge] / 3;
+        if (seen[next]) continue;
+        seen[next] = true;
+        open.push_back(next);
+      }
+    }
   }
-  if (2 * hard.size() > edges) return;
-  for (const std::uint32_t edge : hard) across[edge] = none;
+  return count;
+}
+
+/// Hard edges become borders, unless the normals are those of facets.
+void cut_hard_edges(const Mesh& mesh, std::vector<std::uint32_t>& across) {
+  std::vector<std::uint32_t> cut(across);
+  for (std::uint32_t edge = 0; edge < across.size(); ++edge) {
+    if (across[edge] != none && is_hard(mesh, edge, across[edge])) cut[edge] = none;
+  }
+  const std::size_t parts = count_parts(cut) - count_parts(across);
+  if (parts <= few_parts || parts * small_part <= mesh.triangle_count()) across = std::move(cut);
 }
 
 void measure(Surface& surface, std::size_t t) {

@@ -25,7 +25,8 @@ struct UnwrapOptions {
               "Largest angle between a chart's direction and the normal of a triangle in it"),
         field("across_hard_edges", &UnwrapOptions::across_hard_edges,
               "Charts may run across hard edges, where the base normals of both sides differ by 15 "
-              "degrees or more; where most edges are hard they always do"),
+              "degrees or more; where these bound facets (over 64 parts of fewer than 8 triangles "
+              "each) they always do"),
         field("size", &UnwrapOptions::size, "pixels", 64, 16384,
               "Side of the map that the atlas is made for, in texels"),
         field("gutter", &UnwrapOptions::gutter, "pixels", 0, 64,
@@ -59,8 +60,8 @@ struct UnwrapReport {
 /// lies in one point of a neighbour's.
 ///
 /// UVs lie within 0..1. The result is the same for any number of threads. Throws InvalidInput when
-/// the mesh has no triangle with an area, an index or a position is unusable or an option is out of
-/// its range; then, or when cancelled, the mesh stays as it was.
+/// the mesh has no triangle with an area, an index or a position is unusable, an option is out of
+/// its range or its gutter leaves no room; then, or when cancelled, the mesh stays as it was.
 UnwrapReport unwrap(Mesh& mesh, const UnwrapOptions& options = {}, const Progress& progress = {});
 
 }  // namespace normalshop

@@ -27,7 +27,8 @@ struct Packing {
 
 /// Packs shapes, all scaled alike, as pictures into the unit square, as large as it finds them to
 /// fit, with `gutter` (in the square's sides) between them and half of it along the square's
-/// border. Shapes may lie in holes and bays of others.
+/// border. Shapes may lie in holes and bays of others. Throws InvalidInput when the gutter leaves
+/// no room for that many.
 Packing pack(std::span<const PackShape> shapes, double gutter);
 
 /// Rows of bits, 64 a word.
