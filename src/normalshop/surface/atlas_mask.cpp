@@ -110,14 +110,14 @@ RunRows runs_of(const BitPicture& cells) {
 
 RunRows upside_down(const RunRows& rows, int width) {
   RunRows turned_rows;
-  turned_rows.runs.reserve(rows.runs.size());
-  for (auto run = rows.runs.rbegin(); run != rows.runs.rend(); ++run) {
-    turned_rows.runs.push_back({width - run->end, width - run->begin});
-  }
-  turned_rows.start.clear();
-  for (auto start = rows.start.rbegin(); start != rows.start.rend(); ++start) {
-    turned_rows.start.push_back(rows.start.back() - *start);
-  }
+  turned_rows.runs.resize(rows.runs.size());
+  std::transform(rows.runs.rbegin(), rows.runs.rend(), turned_rows.runs.begin(),
+                 [&](const BitRun& run) {
+                   return BitRun{width - run.end, width - run.begin};
+                 });
+  turned_rows.start.resize(rows.start.size());
+  std::transform(rows.start.rbegin(), rows.start.rend(), turned_rows.start.begin(),
+                 [&](std::uint32_t start) { return rows.start.back() - start; });
   return turned_rows;
 }
 

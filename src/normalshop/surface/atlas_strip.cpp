@@ -74,7 +74,7 @@ class FitFinder {
   /// differ more than neighbours': halves, quarters, eighths.
   void order_rows() {
     const auto height = static_cast<std::uint32_t>(mask_.height);
-    const int bits = std::bit_width(height);
+    const auto bits = static_cast<int>(std::bit_width(height));
     for (std::uint32_t i = 0; i < std::uint32_t{1} << bits; ++i) {
       std::uint32_t row = 0;
       for (int bit = 0; bit < bits; ++bit) row = row << 1 | (i >> bit & 1U);
@@ -105,7 +105,8 @@ class FitFinder {
 
   /// Takes the places away at which the run meets a used cell; false: none is left.
   bool exclude(std::size_t row, const BitRun& run) {
-    const int level = std::bit_width(static_cast<unsigned>(run.end - run.begin)) - 1;
+    const int level =
+        static_cast<int>(std::bit_width(static_cast<unsigned>(run.end - run.begin))) - 1;
     const std::uint64_t* smeared = strip_.smeared(row, static_cast<std::size_t>(level));
     const int second = run.end - (1 << level);
     for (std::size_t i = first_; i <= last_; ++i) {
