@@ -14,6 +14,7 @@
 #include "normalshop/surface/tangents.h"
 #include "normalshop/surface/texel_map.h"
 #include "normalshop/surface/topology.h"
+#include "normalshop/surface/unwrap.h"
 #include "normalshop/surface/vertex_normals.h"
 
 namespace normalshop {
@@ -98,6 +99,21 @@ void normals(benchmark::State& state) {
     benchmark::DoNotOptimize(mesh.normals.data());
   }
 }
+
+/// A new atlas for the whole mesh.
+void unwrap_mesh(benchmark::State& state) {
+  Mesh mesh = mesh_of(state);
+  UnwrapReport report;
+  for (auto _ : state) report = unwrap(mesh);
+  state.counters["charts"] = static_cast<double>(report.charts);
+  state.counters["coverage"] = report.coverage;
+  state.counters["stretch"] = report.mean_stretch;
+}
+BENCHMARK(unwrap_mesh)
+    ->ArgNames({"model", "subdivided"})
+    ->ArgsProduct({{Cube, Head}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"model", "subdivided"})

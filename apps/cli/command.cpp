@@ -30,6 +30,7 @@ void run(int argc, char** argv) {
   add_render_verb(program);
   add_compare_verb(program);
   add_info_verb(program);
+  add_unwrap_verb(program);
   add_demo_verb(program);
   add_describe_verb(program);
   add_operator_verbs(program);

@@ -16,6 +16,7 @@ void add_convert_verb(CommandLine& program);
 void add_shade_verb(CommandLine& program);
 void add_segment_verb(CommandLine& program);
 void add_describe_verb(CommandLine& program);
+void add_unwrap_verb(CommandLine& program);
 void add_operator_verbs(CommandLine& program);
 
 }  // namespace normalshop::cli

@@ -216,8 +216,10 @@ TEST_F(BadInput, Models) {
       {{"info", path("lonely/lonely.gltf")}, {path("lonely/plane.bin")}},
       {{"info", path("short.gltf")}, {path("short.gltf"), "buffers[0]"}},
       {{"info", path("model.fbx")}, {path("model.fbx")}},
-      {edit("no_uvs.gltf", "map.png", "recipe.json"), {"no_uvs.gltf", "texture coordinates"}},
-      {edit("no_uvs.obj", "map.png", "recipe.json"), {"no_uvs.obj", "texture coordinates"}},
+      {edit("no_uvs.gltf", "map.png", "recipe.json"),
+       {"no_uvs.gltf", "texture coordinates", "normalshop unwrap"}},
+      {edit("no_uvs.obj", "map.png", "recipe.json"),
+       {"no_uvs.obj", "texture coordinates", "normalshop unwrap"}},
       {{"render", path("third.obj"), "-o", path("picture.png")}, {"third.obj"}}};
   ::testing::internal::CaptureStderr();
   for (const std::string extension : {"gltf", "glb", "obj"}) {

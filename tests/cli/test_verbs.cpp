@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string>& verbs() {
-  static const std::vector<std::string> all{"edit", "render", "compare",
-                                            "info", "demo",   "describe"};
+  static const std::vector<std::string> all{"edit", "render",   "compare", "info",
+                                            "demo", "describe", "unwrap"};
   return all;
 }
 

@@ -233,6 +233,11 @@ TEST(Gltf, WhatIsMissingIsSaid) {
   GltfBuilder no_uvs;
   no_uvs.square()["attributes"].erase("TEXCOORD_0");
   EXPECT_NE(error_of([&] { no_uvs.read(); }).find("no texture coordinates"), std::string::npos);
+  ModelReadOptions keep;
+  keep.keep_without_uvs = true;
+  const Mesh kept = no_uvs.read(keep).mesh;
+  EXPECT_EQ(kept.triangle_count(), 2U);
+  EXPECT_EQ(kept.uvs, std::vector<Vec2f>(6, Vec2f(0.0F, 0.0F)));
 
   GltfBuilder some;
   some.square();

@@ -65,8 +65,7 @@ class Reader {
     for (const auto& [node, transform] : placed_nodes()) read_node(node, transform);
     if (skipped_no_uv_ > 0 && model_.mesh.triangles.empty()) {
       fail(file_,
-           "the model has no texture coordinates; NormalShop edits meshes with a texture "
-           "atlas");
+           "the model has no texture coordinates; \"normalshop unwrap\" writes it with some");
     }
     if (model_.mesh.triangles.empty()) fail(file_, "the model has no triangles");
     if (skipped_no_uv_ > 0) {
@@ -270,7 +269,7 @@ class Reader {
     const int material = material_of(primitive, where);
     const UvChoice uv = materials_.uv_choice(material);
     const std::string uv_name = "TEXCOORD_" + std::to_string(uv.set);
-    if (!attribute(primitive, uv_name, where)) {
+    if (!options_.keep_without_uvs && !attribute(primitive, uv_name, where)) {
       ++skipped_no_uv_;
       return;
     }
@@ -319,7 +318,7 @@ class Reader {
       mesh.triangles.emplace_back(base + order[0], base + order[1], base + order[2]);
       mesh.texture_sets.push_back(static_cast<std::uint32_t>(set));
       for (const std::uint32_t v : order) {
-        Vec2f uv(uvs[2 * v], uvs[2 * v + 1]);
+        Vec2f uv = uvs.empty() ? Vec2f(0.0F, 0.0F) : Vec2f(uvs[2 * v], uvs[2 * v + 1]);
         if (options_.flip_v) uv.y() = 1.0F - uv.y();
         mesh.uvs.push_back(uv_transform.apply(uv));
         mesh.normals.push_back(normals.empty() ? Vec3f(Vec3f::Zero())

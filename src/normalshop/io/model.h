@@ -52,6 +52,8 @@ struct Model {
 struct ModelReadOptions {
   /// The file's V runs the other way than its format says: v becomes 1 - v.
   bool flip_v = false;
+  /// Faces without texture coordinates are kept, with all theirs at one point, instead of left out.
+  bool keep_without_uvs = false;
   /// A file with more is refused.
   std::size_t max_triangles = std::size_t{1} << 27;
 };

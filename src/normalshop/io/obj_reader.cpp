@@ -33,9 +33,7 @@ class ObjReader {
       read_line(line);
     });
     if (model_.mesh.triangles.empty() && skipped_ > 0) {
-      fail_file(
-          "the model has no texture coordinates; NormalShop edits meshes with a texture "
-          "atlas");
+      fail_file("the model has no texture coordinates; \"normalshop unwrap\" writes it with some");
     }
     if (model_.mesh.triangles.empty()) fail_file("the model has no faces");
     if (skipped_ > 0) {
@@ -166,8 +164,8 @@ class ObjReader {
       corners_.push_back(corner(word));
     }
     if (corners_.size() < 3) fail("a face needs at least three corners");
-    if (std::any_of(corners_.begin(), corners_.end(),
-                    [](const Corner& c) { return c.uv == none; })) {
+    if (!options_.keep_without_uvs && std::any_of(corners_.begin(), corners_.end(),
+                                                  [](const Corner& c) { return c.uv == none; })) {
       ++skipped_;
       return;
     }
@@ -175,7 +173,7 @@ class ObjReader {
     face_uvs_.clear();
     for (const Corner& c : corners_) {
       face_positions_.push_back(model_.mesh.positions[c.position]);
-      face_uvs_.push_back(uvs_[c.uv]);
+      face_uvs_.push_back(uv_of(c));
     }
     if (model_.mesh.triangles.size() + corners_.size() > options_.max_triangles) {
       fail("the model has more than " + std::to_string(options_.max_triangles) + " triangles");
@@ -184,13 +182,15 @@ class ObjReader {
     for (const auto& triangle : triangulate(face_positions_, face_uvs_)) append(triangle);
   }
 
+  Vec2f uv_of(const Corner& c) const { return c.uv == none ? Vec2f(Vec2f::Zero()) : uvs_[c.uv]; }
+
   void append(const std::array<int, 3>& triangle) {
     Mesh& mesh = model_.mesh;
     Vec3u indices;
     for (int k = 0; k < 3; ++k) {
       const Corner& c = corners_[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
       indices[k] = static_cast<std::uint32_t>(c.position);
-      mesh.uvs.push_back(uvs_[c.uv]);
+      mesh.uvs.push_back(uv_of(c));
       if (c.normal == none) model_.has_normals = false;
       mesh.normals.push_back(c.normal == none ? Vec3f(Vec3f::Zero()) : normals_[c.normal]);
     }
