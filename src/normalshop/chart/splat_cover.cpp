@@ -1,0 +1,232 @@
+#include "normalshop/chart/splat_cover.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "normalshop/chart/texel_batch.h"
+#include "normalshop/core/parallel.h"
+#include "normalshop/core/sample.h"
+
+namespace normalshop {
+
+namespace {
+
+constexpr int tile_side = 64;
+constexpr float largest_splat = 128.0F;  // pixels from its middle
+constexpr float inner_cell = 0.6F;       // texels from the middle
+constexpr float ring = 1.0F;
+constexpr float nothing_near = -std::numeric_limits<float>::infinity();
+
+/// The texels of one triangle as splats.
+struct Splat {
+  Mat2f to_texel = Mat2f::Zero();  ///< offsets in pixels (y down) to offsets in texels
+  Vec2f reach = Vec2f::Zero();     ///< half the box around the ring, pixels
+  Vec2f depth_step = Vec2f::Zero();
+  float ring_back = 0.0F;  ///< depth by which the ring lies behind the plane
+
+  void load(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
+            std::uint32_t id) {
+    PushTriangle triangle;
+    triangle.load(mesh, grid, id);
+    const TexelAffine& affine = storage.sets[mesh.texture_sets[id]].texels.affines()[id];
+    const Mat3f& points = triangle.points;
+    const Vec2f across = (points.rightCols<2>() * affine.db_dx).head<2>();
+    const Vec2f down = (points.rightCols<2>() * affine.db_dy).head<2>();
+    depth_step = triangle.depth_step;
+    const float area = across.x() * down.y() - across.y() * down.x();
+    reach.setZero();
+    to_texel.setZero();
+    if (!(std::abs(area) > 1e-6F)) return;  // edge-on: it covers no pixel
+    to_texel << down.y() / area, -down.x() / area, -across.y() / area, across.x() / area;
+    reach = (ring * (across.cwiseAbs() + down.cwiseAbs())).cwiseMin(largest_splat);
+    ring_back = std::abs(depth_step.dot(across)) + std::abs(depth_step.dot(down)) + grid.pixel;
+    if (!to_texel.allFinite() || !std::isfinite(ring_back)) reach.setZero();
+  }
+};
+
+/// The splats that a task used last.
+class SplatCache {
+ public:
+  SplatCache(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid)
+      : mesh_(mesh), storage_(storage), grid_(grid), ids_(slots, no_triangle), splats_(slots) {}
+
+  const Splat& get(std::uint32_t triangle) {
+    const std::size_t slot = triangle % slots;
+    if (ids_[slot] != triangle) {
+      splats_[slot].load(mesh_, storage_, grid_, triangle);
+      ids_[slot] = triangle;
+    }
+    return splats_[slot];
+  }
+
+ private:
+  static constexpr std::size_t slots = 512;
+  const Mesh& mesh_;
+  const StorageAtlas& storage_;
+  const ChartGrid& grid_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Splat> splats_;
+};
+
+/// Which eighth of a turn an offset lies in; `eighth ^ 6` is the opposite one.
+unsigned eighth(float dx, float dy) {
+  const unsigned right = dx > 0.0F ? 4U : 0U;
+  const unsigned below = dy > 0.0F ? 2U : 0U;
+  return right | below | (std::abs(dx) > std::abs(dy) ? 1U : 0U);
+}
+
+bool has_opposites(unsigned eighths) {
+  for (unsigned i = 0; i < 8; ++i) {
+    if ((eighths >> i & 1U) != 0 && (eighths >> (i ^ 6U) & 1U) != 0) return true;
+  }
+  return false;
+}
+
+/// Draws all splats that reach a tile of the chart.
+class TileCover {
+ public:
+  TileCover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
+            const Image<PointOffset>& offsets)
+      : chart_(chart), offsets_(offsets), splats_(mesh, storage, chart.grid) {}
+
+  /// The largest reach of the points in a rectangle.
+  int reach(const Rect& rect);
+  void begin(const Rect& tile) {
+    tile_ = tile;
+    front_.fill(nothing_near);
+    sides_.fill(0);
+    inner_.fill(false);
+  }
+  void draw(const Rect& points);
+  void finish(Image<Shown>& shown) const;
+
+ private:
+  void draw_point(int x, int y, const Splat& splat);
+  void draw_pixel(std::size_t i, const Vec2f& offset, float depth, const Splat& splat);
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>((y - tile_.y0) * tile_side + x - tile_.x0);
+  }
+
+  const EditingChart& chart_;
+  const Image<PointOffset>& offsets_;
+  SplatCache splats_;
+  Rect tile_;
+  std::array<float, tile_side * tile_side> front_;         // depth of what the splats show
+  std::array<std::uint8_t, tile_side * tile_side> sides_;  // eighths from which rings cover
+  std::array<bool, tile_side * tile_side> inner_;          // covered by a splat's middle
+};
+
+int TileCover::reach(const Rect& rect) {
+  float most = 0.0F;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const std::uint32_t* ids = chart_.ids.triangle.row(y);
+    std::uint32_t last = no_triangle;
+    for (int x = rect.x0; x < rect.x1; ++x) {
+      if (ids[x] == last || ids[x] == no_triangle) continue;
+      last = ids[x];
+      most = std::max(most, splats_.get(last).reach.maxCoeff());
+    }
+  }
+  return static_cast<int>(std::ceil(most + 0.5F));
+}
+
+void TileCover::draw_pixel(std::size_t i, const Vec2f& offset, float depth, const Splat& splat) {
+  const Vec2f texels = splat.to_texel * offset;
+  const float from_middle = std::max(std::abs(texels.x()), std::abs(texels.y()));
+  if (from_middle > ring) return;
+  if (from_middle <= inner_cell) {
+    inner_[i] = true;
+  } else {
+    depth -= splat.ring_back;
+    sides_[i] = static_cast<std::uint8_t>(sides_[i] | 1U << eighth(offset.x(), offset.y()));
+  }
+  front_[i] = std::max(front_[i], depth);
+}
+
+void TileCover::draw_point(int x, int y, const Splat& splat) {
+  const Vec2f middle(static_cast<float>(x) + PointOffset::unit * offsets_(x, y).x,
+                     static_cast<float>(y) + PointOffset::unit * offsets_(x, y).y);
+  const Vec2f low = middle - splat.reach;
+  const Vec2f high = middle + splat.reach;
+  Rect box{-floor_to_int(-low.x()), -floor_to_int(-low.y()), floor_to_int(high.x()) + 1,
+           floor_to_int(high.y()) + 1};
+  box = intersect(box, tile_);
+  const float depth = chart_.ids.depth(x, y);
+  for (int j = box.y0; j < box.y1; ++j) {
+    const auto down = static_cast<float>(j - y);
+    for (int i = box.x0; i < box.x1; ++i) {
+      const auto right = static_cast<float>(i - x);
+      const Vec2f offset(static_cast<float>(i) - middle.x(), static_cast<float>(j) - middle.y());
+      draw_pixel(index(i, j), offset,
+                 depth + right * splat.depth_step.x() + down * splat.depth_step.y(), splat);
+    }
+  }
+}
+
+void TileCover::draw(const Rect& points) {
+  for (int y = points.y0; y < points.y1; ++y) {
+    const std::uint32_t* ids = chart_.ids.triangle.row(y);
+    for (int x = points.x0; x < points.x1; ++x) {
+      if (ids[x] != no_triangle) draw_point(x, y, splats_.get(ids[x]));
+    }
+  }
+}
+
+void TileCover::finish(Image<Shown>& shown) const {
+  const float behind = chart_.grid.pixel;
+  for (int y = tile_.y0; y < tile_.y1; ++y) {
+    for (int x = tile_.x0; x < tile_.x1; ++x) {
+      const std::size_t i = index(x, y);
+      const bool point = chart_.ids.triangle(x, y) != no_triangle;
+      const bool hidden = point && chart_.ids.depth(x, y) < front_[i] - behind;
+      const bool surface = point || inner_[i] || has_opposites(sides_[i]);
+      shown(x, y) = point && !hidden ? Shown::Point : surface ? Shown::Hole : Shown::Nothing;
+    }
+  }
+}
+
+}  // namespace
+
+Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
+                   const Image<PointOffset>& offsets) {
+  const Rect all = chart.ids.triangle.rect();
+  const int columns = (all.x1 + tile_side - 1) / tile_side;
+  const int rows = (all.y1 + tile_side - 1) / tile_side;
+  const auto tile = [&](int i) {
+    const int x = i % columns * tile_side;
+    const int y = i / columns * tile_side;
+    return intersect({x, y, x + tile_side, y + tile_side}, all);
+  };
+  const auto count = static_cast<std::size_t>(columns * rows);
+  std::vector<int> reaches(count);
+  parallel_for(count, 8, [&](std::size_t a, std::size_t b) {
+    TileCover task(mesh, storage, chart, offsets);
+    for (std::size_t i = a; i < b; ++i) reaches[i] = task.reach(tile(static_cast<int>(i)));
+  });
+  const int farthest = count > 0 ? *std::max_element(reaches.begin(), reaches.end()) : 0;
+  const int around = (farthest + tile_side - 1) / tile_side;
+  Image<Shown> shown(all.x1, all.y1);
+  parallel_for(count, 8, [&](std::size_t a, std::size_t b) {
+    TileCover task(mesh, storage, chart, offsets);
+    for (std::size_t i = a; i < b; ++i) {
+      const int column = static_cast<int>(i) % columns;
+      const int row = static_cast<int>(i) / columns;
+      task.begin(tile(static_cast<int>(i)));
+      for (int r = std::max(row - around, 0); r <= std::min(row + around, rows - 1); ++r) {
+        for (int c = std::max(column - around, 0); c <= std::min(column + around, columns - 1);
+             ++c) {
+          const int other = r * columns + c;
+          const int reach = reaches[static_cast<std::size_t>(other)];
+          task.draw(intersect(tile(other), grow(tile(static_cast<int>(i)), reach)));
+        }
+      }
+      task.finish(shown);
+    }
+  });
+  return shown;
+}
+
+}  // namespace normalshop
