@@ -95,7 +95,7 @@ Difference difference(const ChartPair& charts, int size, int reach) {
     for (int x = 0; x < a.grid.width(); ++x) {
       const bool in_a = a.ids.triangle(x, y) != no_triangle;
       const bool in_b = b.ids.triangle(x, y) != no_triangle;
-      if (in_a && !in_b && seen_around(a, x, y, true)) ++out.holes;
+      if (in_a && !in_b && seen_around(a, x, y, true)) {++out.holes; if (std::getenv("LEAK") != nullptr) std::printf("hole %d %d tri %u texel %u,%u z %.2f\n", x, y, a.ids.triangle(x,y), a.texel(x,y)%size, a.texel(x,y)/size, a.base_normal(x,y).z());}
       if (in_b && !in_a && !seen_around(a, x, y, false)) ++out.outside;
       if (!in_a || !in_b) continue;
       ++out.both;
@@ -104,6 +104,7 @@ Difference difference(const ChartPair& charts, int size, int reach) {
       if (texels_apart(a.texel(x, y), b.texel(x, y), size) > reach) ++out.far_texels;
       const double apart = std::abs(a.ids.depth(x, y) - b.ids.depth(x, y)) / a.grid.pixel;
       out.depth = std::max(out.depth, apart);
+      if (std::getenv("LEAK") != nullptr && apart > 5) std::printf("leak %d %d apart %.1f tri %u / %u texel %u,%u / %u,%u z %.2f pz %.2f\n", x, y, apart, a.ids.triangle(x,y), b.ids.triangle(x,y), a.texel(x,y)%size, a.texel(x,y)/size, b.texel(x,y)%size,b.texel(x,y)/size, a.base_normal(x,y).z(), b.base_normal(x,y).z());
       out.normal += angle_degrees(a.base_normal(x, y), b.base_normal(x, y));
     }
   }

@@ -81,7 +81,7 @@ void PointPull::find_depth_steps() {
   const View& view = chart_.grid.view;
   const float middle = view.to_chart(box.center() - view.center).z();
   const float half = view.direction.cwiseAbs().dot(0.5F * (box.high - box.low));
-  constexpr float steps_per_pixel = 8.0F;
+  constexpr float steps_per_pixel = 2.0F;
   constexpr float steps = 16777215.0F;  // 24 bits
   nearest_ = middle + half + chart_.grid.pixel;
   step_ = std::max(chart_.grid.pixel / steps_per_pixel, 2.0F * (half + chart_.grid.pixel) / steps);

@@ -9,7 +9,7 @@ namespace normalshop {
 /// shared texel stands for. chart.texel is filled.
 ///
 /// A pixel takes the nearest point that falls into it (of points whose depths at its centre differ
-/// by less than an eighth of a pixel the one nearest to the centre), unless the splats around hide
+/// by less than half a pixel the one nearest to the centre), unless the splats around hide
 /// it. Splats are as large as their texels and tilted like their triangles, so that a smooth
 /// surface does not hide its own points. Holes between points show the nearest one
 /// (L-infinity), with its plane's depth. Ids end with the surface: within a pixel where texels are

@@ -20,30 +20,56 @@ constexpr float inner_cell = 0.6F;       // texels from the middle
 constexpr float ring = 1.0F;
 constexpr float nothing_near = -std::numeric_limits<float>::infinity();
 
-/// The texels of one triangle as splats.
+/// Stretches the plane so that nothing in `cell` (columns: its sides) is narrower than a pixel.
+Mat2f widening(const Mat2f& cell) {
+  const Mat2f a = cell * cell.transpose();
+  const float middle = 0.5F * (a(0, 0) + a(1, 1));
+  const float half = 0.5F * (a(0, 0) - a(1, 1));
+  const float radius = std::sqrt(half * half + a(0, 1) * a(0, 1));
+  Vec2f axis(half + radius, a(0, 1));  // the longer
+  if (half < 0.0F) axis = {a(0, 1), radius - half};
+  axis = radius > 0.0F ? Vec2f(axis.normalized()) : Vec2f(1.0F, 0.0F);
+  const float area = std::abs(cell(0, 0) * cell(1, 1) - cell(0, 1) * cell(1, 0));
+  const float longer = std::sqrt(middle + radius);
+  const float along = std::max(1.0F, 1.0F / longer);
+  const float across = std::max(1.0F, longer / area);
+  return across * Mat2f::Identity() + (along - across) * axis * axis.transpose();
+}
+
+/// The texels of one triangle as splats. Offsets in pixels run down.
 struct Splat {
-  Mat2f to_texel = Mat2f::Zero();  ///< offsets in pixels (y down) to offsets in texels
+  Mat2f to_texel = Mat2f::Zero();  ///< offsets in pixels to offsets in texels
+  Mat2f to_wide = Mat2f::Zero();   ///< the same where texels are at least as wide as pixels
   Vec2f reach = Vec2f::Zero();     ///< half the box around the ring, pixels
   Vec2f depth_step = Vec2f::Zero();
-  float ring_back = 0.0F;  ///< depth by which the ring lies behind the plane
+  float wide_back = 0.0F;  ///< depth by which what is not the texel's own cell is behind the plane
+  float ring_back = 0.0F;  ///< likewise the ring
 
   void load(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
             std::uint32_t id) {
     PushTriangle triangle;
     triangle.load(mesh, grid, id);
     const TexelAffine& affine = storage.sets[mesh.texture_sets[id]].texels.affines()[id];
-    const Mat3f& points = triangle.points;
-    const Vec2f across = (points.rightCols<2>() * affine.db_dx).head<2>();
-    const Vec2f down = (points.rightCols<2>() * affine.db_dy).head<2>();
+    Mat2f cell;
+    cell.col(0) = (triangle.points.rightCols<2>() * affine.db_dx).head<2>();
+    cell.col(1) = (triangle.points.rightCols<2>() * affine.db_dy).head<2>();
     depth_step = triangle.depth_step;
-    const float area = across.x() * down.y() - across.y() * down.x();
     reach.setZero();
-    to_texel.setZero();
-    if (!(std::abs(area) > 1e-6F)) return;  // edge-on: it covers no pixel
-    to_texel << down.y() / area, -down.x() / area, -across.y() / area, across.x() / area;
-    reach = (ring * (across.cwiseAbs() + down.cwiseAbs())).cwiseMin(largest_splat);
-    ring_back = std::abs(depth_step.dot(across)) + std::abs(depth_step.dot(down)) + grid.pixel;
-    if (!to_texel.allFinite() || !std::isfinite(ring_back)) reach.setZero();
+    const float area = cell(0, 0) * cell(1, 1) - cell(0, 1) * cell(1, 0);
+    if (!(std::abs(area) > 1e-4F * cell.squaredNorm())) return;  // edge-on: it covers no pixel
+    Mat2f adjugate;
+    adjugate << cell(1, 1), -cell(0, 1), -cell(1, 0), cell(0, 0);
+    to_texel = adjugate / area;
+    const Mat2f widen = widening(cell);
+    const Mat2f wide = widen * cell;
+    const float wide_area = wide(0, 0) * wide(1, 1) - wide(0, 1) * wide(1, 0);
+    adjugate << wide(1, 1), -wide(0, 1), -wide(1, 0), wide(0, 0);
+    to_wide = adjugate / wide_area;
+    wide_back = 0.5F * triangle.steepness;
+    ring_back =
+        std::abs(depth_step.dot(wide.col(0))) + std::abs(depth_step.dot(wide.col(1))) + grid.pixel;
+    if (!to_texel.allFinite() || !to_wide.allFinite() || !std::isfinite(ring_back)) return;
+    reach = (ring * (wide.col(0).cwiseAbs() + wide.col(1).cwiseAbs())).cwiseMin(largest_splat);
   }
 };
 
@@ -134,14 +160,14 @@ int TileCover::reach(const Rect& rect) {
 }
 
 void TileCover::draw_pixel(std::size_t i, const Vec2f& offset, float depth, const Splat& splat) {
-  const Vec2f texels = splat.to_texel * offset;
-  const float from_middle = std::max(std::abs(texels.x()), std::abs(texels.y()));
+  const float from_middle = (splat.to_wide * offset).cwiseAbs().maxCoeff();
   if (from_middle > ring) return;
-  if (from_middle <= inner_cell) {
-    inner_[i] = true;
-  } else {
+  if (from_middle > inner_cell) {
     depth -= splat.ring_back;
     sides_[i] = static_cast<std::uint8_t>(sides_[i] | 1U << eighth(offset.x(), offset.y()));
+  } else {
+    inner_[i] = true;
+    if ((splat.to_texel * offset).cwiseAbs().maxCoeff() > inner_cell) depth -= splat.wide_back;
   }
   front_[i] = std::max(front_[i], depth);
 }
@@ -188,6 +214,29 @@ void TileCover::finish(Image<Shown>& shown) const {
   }
 }
 
+/// Single pixels between surface on opposite sides: where texels are crowded in one direction and
+/// far apart in the other, splats of those that lost their pixels are missing.
+void close_cracks(Image<Shown>& shown) {
+  std::vector<std::vector<std::size_t>> found(static_cast<std::size_t>(shown.height()));
+  parallel_rows(shown.height(), [&](int y) {
+    const auto surface = [&](int i, int j) {
+      return shown.rect().contains(i, j) && shown(i, j) != Shown::Nothing;
+    };
+    const auto between = [&](int x, int dx, int dy) {
+      return surface(x - dx, y - dy) && surface(x + dx, y + dy);
+    };
+    for (int x = 0; x < shown.width(); ++x) {
+      if (shown(x, y) != Shown::Nothing) continue;
+      if (between(x, 1, 0) || between(x, 0, 1)) {
+        found[static_cast<std::size_t>(y)].push_back(static_cast<std::size_t>(x));
+      }
+    }
+  });
+  for (int y = 0; y < shown.height(); ++y) {
+    for (const std::size_t x : found[static_cast<std::size_t>(y)]) shown.row(y)[x] = Shown::Hole;
+  }
+}
+
 }  // namespace
 
 Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
@@ -226,6 +275,7 @@ Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingC
       task.finish(shown);
     }
   });
+  close_cracks(shown);
   return shown;
 }
 

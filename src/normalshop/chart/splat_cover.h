@@ -23,7 +23,7 @@ struct PointOffset {
 /// The middle of a splat, a little more than the texel's own cell, hides what lies more than a
 /// pixel behind it; the ring around it, up to twice the cell, what lies a texel's depth further
 /// behind. A pixel that only rings cover is a hole where they come from opposite sides, as beside a
-/// seam: past a silhouette they come from one.
+/// seam: past a silhouette they come from one. Cracks of a single pixel are closed.
 Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
                    const Image<PointOffset>& offsets);
 
