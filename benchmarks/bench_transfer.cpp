@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,6 @@
 
 #include "normalshop/chart/effective.h"
 #include "normalshop/chart/point_pull.h"
-#include "normalshop/chart/resolution.h"
 #include "normalshop/chart/update_storage.h"
 #include "normalshop/core/options.h"
 #include "normalshop/core/parallel.h"
@@ -96,27 +96,38 @@ RoundTrip round_trip(const StorageAtlas& before, const StorageAtlas& after) {
   return out;
 }
 
-ChartGrid grid_of(const Scene& scene, const Vec3f& direction, float pixels_a_texel) {
+ChartGrid grid_of(const Scene& scene, const Vec3f& direction, int side) {
   const View view = framing_view(scene.mesh, direction);
-  const Vec2f half(0.5F * view.width, 0.5F * view.height);
-  const float texel = texel_pixel_size(scene.mesh, scene.storage, view, -half, half);
-  return make_grid(view, texel / pixels_a_texel);
+  return make_grid(view, std::max(view.width, view.height) / static_cast<float>(side));
 }
 
-EditingChart build(const Scene& scene, const ChartGrid& grid, Transfer transfer) {
-  return transfer == Transfer::Point ? pull_points(scene.mesh, scene.storage, grid)
-                                     : pull(scene.mesh, scene.storage, grid);
+void build(const Scene& scene, const ChartGrid& grid, Transfer transfer, Rasterizer& rasterizer,
+           EditingChart& chart) {
+  if (transfer == Transfer::Point) {
+    pull_points(scene.mesh, scene.storage, grid, {}, chart);
+  } else {
+    pull(scene.mesh, scene.storage, grid, {}, rasterizer, chart);
+  }
 }
 
-double median_seconds(int runs, const auto& work) {
-  std::vector<double> times;
+struct Times {
+  double clock = 0.0;      // milliseconds, median
+  double processor = 0.0;  // of all threads together: what a busy machine disturbs less
+};
+
+Times measure(int runs, const auto& work) {
+  std::vector<double> wall;
+  std::vector<double> processor;
   for (int i = 0; i < runs; ++i) {
+    const std::clock_t used = std::clock();
     Stopwatch watch;
     work();
-    times.push_back(watch.lap());
+    wall.push_back(1e3 * watch.lap());
+    processor.push_back(static_cast<double>(std::clock() - used) * 1e3 / CLOCKS_PER_SEC);
   }
-  std::sort(times.begin(), times.end());
-  return times[times.size() / 2];
+  std::sort(wall.begin(), wall.end());
+  std::sort(processor.begin(), processor.end());
+  return {wall[wall.size() / 2], processor[processor.size() / 2]};
 }
 
 void update(const Scene& scene, EditingChart& chart, const ChartEdit& edit, Update how,
@@ -129,11 +140,10 @@ void update(const Scene& scene, EditingChart& chart, const ChartEdit& edit, Upda
   update_storage(scene.mesh, chart, edit, how, storage);
 }
 
-void compare(const Scene& scene, float pixels_a_texel) {
-  const ChartGrid grid = grid_of(scene, Vec3f::UnitZ(), pixels_a_texel);
-  std::printf("%s, maps of %d x %d, %.3g pixels a texel: charts of %d x %d, %d threads\n",
-              scene.name.c_str(), map_side, map_side, static_cast<double>(pixels_a_texel),
-              grid.width(), grid.height(), thread_count());
+void compare(const Scene& scene, int side) {
+  const ChartGrid grid = grid_of(scene, Vec3f::UnitZ(), side);
+  std::printf("%s, maps of %d x %d: charts of %d x %d, %d threads\n", scene.name.c_str(), map_side,
+              map_side, grid.width(), grid.height(), thread_count());
   std::printf(
       "| transfer | update | chart, ms | update, ms | texels written | lost | mean, deg | p99, deg "
       "| seams mean | p99 |\n");
@@ -143,7 +153,8 @@ void compare(const Scene& scene, float pixels_a_texel) {
   const std::vector<float> before = seam_angles(scene.mesh, samples, maps);
   for (const Transfer transfer : {Transfer::Triangle, Transfer::Point}) {
     EditingChart chart;
-    const double chart_time = median_seconds(5, [&] { chart = build(scene, grid, transfer); });
+    Rasterizer rasterizer;
+    const Times chart_time = measure(5, [&] { build(scene, grid, transfer, rasterizer, chart); });
     EffectiveOptions effective;
     effective.step_falloff = 0.004F * bounds(scene.mesh).diagonal();
     compute_weight(chart, effective);
@@ -167,14 +178,15 @@ void compare(const Scene& scene, float pixels_a_texel) {
       // A real edit, into a map that it has been in before, so that no first copies are timed.
       edit.change = some;
       update(scene, chart, edit, how, storage);
-      const double time = median_seconds(5, [&] {
+      const Times time = measure(5, [&] {
         if (transfer == Transfer::Triangle) chart.texel = {};
         update(scene, chart, edit, how, storage);
       });
-      std::printf("| %s | %s | %.0f | %.0f | %zu | %zu | %.3f | %.3f | %.4f | %.3f |\n",
-                  std::string(name_of(transfer)).c_str(), std::string(name_of(how)).c_str(),
-                  1e3 * chart_time, 1e3 * time, error.texels, lost, error.mean, error.p99,
-                  growth.mean, growth.p99);
+      std::printf(
+          "| %s | %s | %.0f / %.0f | %.0f / %.0f | %zu | %zu | %.3f | %.3f | %.4f | %.3f |\n",
+          std::string(name_of(transfer)).c_str(), std::string(name_of(how)).c_str(),
+          chart_time.clock, chart_time.processor, time.clock, time.processor, error.texels, lost,
+          error.mean, error.p99, growth.mean, growth.p99);
     }
   }
 }
@@ -188,7 +200,7 @@ void repeat_nothing(const Scene& scene, Update how, int edits) {
     const float height = random.uniform(-1.0F, 1.0F);
     const float wide = std::sqrt(1.0F - height * height);
     const Vec3f direction(wide * std::sin(turn), height, wide * std::cos(turn));
-    const ChartGrid grid = grid_of(scene, direction, 0.5F);
+    const ChartGrid grid = grid_of(scene, direction, 2048);
     EditingChart chart = pull(scene.mesh, storage, grid);
     compute_weight(chart, {});
     const SlopeImage none(grid.width(), grid.height(), Vec2f::Zero());
@@ -212,12 +224,14 @@ void bench_plane() {
   const View view = make_view(Vec3f::UnitZ(), Vec3f::UnitY(), Vec3f(0.5F, 0.5F, 0.0F), 1.0F, 1.0F);
   for (const float texels : {1.0F, 1.3F}) {
     const ChartGrid grid = make_grid(view, texels / static_cast<float>(map_side));
-    const double points =
-        median_seconds(5, [&] { pull_points(scene.mesh, scene.storage, grid, {.normals = true}); });
-    const double triangles =
-        median_seconds(5, [&] { pull(scene.mesh, scene.storage, grid, {.normals = true}); });
-    std::printf("plane, 16.8 million texels, chart of %d x %d: points %.0f ms, triangles %.0f ms\n",
-                grid.width(), grid.height(), 1e3 * points, 1e3 * triangles);
+    EditingChart chart;
+    Rasterizer rasterizer;
+    for (const Transfer transfer : {Transfer::Point, Transfer::Triangle}) {
+      const Times t = measure(5, [&] { build(scene, grid, transfer, rasterizer, chart); });
+      std::printf("plane, 16.8 million texels, chart of %d x %d: %s %.0f ms (processor %.0f)\n",
+                  grid.width(), grid.height(), std::string(name_of(transfer)).c_str(), t.clock,
+                  t.processor);
+    }
   }
 }
 
@@ -226,10 +240,11 @@ void bench_plane() {
 
 int main() {
   using namespace normalshop;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   bench_plane();
   const Scene scene = load_scene();
-  for (const float pixels : {1.0F, 0.5F, 2.0F}) compare(scene, pixels);
-  for (const Update how : {Update::Gather, Update::Point, Update::Area}) {
-    repeat_nothing(scene, how, 100);
-  }
+  for (const int side : {2048, 4096}) compare(scene, side);
+  repeat_nothing(scene, Update::Gather, 100);
+  repeat_nothing(scene, Update::Point, 20);
+  repeat_nothing(scene, Update::Area, 20);
 }

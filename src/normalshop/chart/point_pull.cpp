@@ -30,11 +30,11 @@ struct Landing {
 class PointPull {
  public:
   PointPull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
-            const PullOptions& options)
-      : mesh_(mesh), storage_(storage), options_(options) {
+            const PullOptions& options, EditingChart& chart)
+      : mesh_(mesh), storage_(storage), options_(options), chart_(chart) {
     chart_.grid = grid;
   }
-  EditingChart run();
+  void run();
 
  private:
   void number_points();
@@ -55,7 +55,7 @@ class PointPull {
   const Mesh& mesh_;
   const StorageAtlas& storage_;
   const PullOptions& options_;
-  EditingChart chart_;
+  EditingChart& chart_;
   std::vector<std::uint32_t> first_;      // per set: number of its first texel's point
   std::vector<std::uint8_t> candidates_;  // per triangle: may it lie in the window?
   float nearest_ = 0.0F;                  // depth that no point is in front of
@@ -113,8 +113,8 @@ void PointPull::allocate() {
   chart_.ids.depth.resize(width, height);
   chart_.texel.resize(width, height);
   chart_.base_normal.resize(width, height);
-  if (options_.normals) chart_.normal.resize(width, height);
-  if (options_.albedo) chart_.albedo.resize(width, height);
+  chart_.normal.resize(options_.normals ? width : 0, options_.normals ? height : 0);
+  chart_.albedo.resize(options_.albedo ? width : 0, options_.albedo ? height : 0);
   parallel_rows(height, [&](int y) {
     std::fill_n(keys_.row(y), width, no_key);
     std::fill_n(chart_.ids.triangle.row(y), width, no_triangle);
@@ -283,7 +283,7 @@ void PointPull::fill_holes() {
   });
 }
 
-EditingChart PointPull::run() {
+void PointPull::run() {
   number_points();
   find_depth_steps();
   find_candidates();
@@ -300,14 +300,20 @@ EditingChart PointPull::run() {
   });
   keys_ = {};
   fill_holes();
-  return std::move(chart_);
 }
 
 }  // namespace
 
+void pull_points(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
+                 const PullOptions& options, EditingChart& chart) {
+  PointPull(mesh, storage, grid, options, chart).run();
+}
+
 EditingChart pull_points(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
                          const PullOptions& options) {
-  return PointPull(mesh, storage, grid, options).run();
+  EditingChart chart;
+  pull_points(mesh, storage, grid, options, chart);
+  return chart;
 }
 
 }  // namespace normalshop

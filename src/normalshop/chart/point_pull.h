@@ -20,5 +20,8 @@ namespace normalshop {
 /// or more.
 EditingChart pull_points(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
                          const PullOptions& options = {});
+/// The same into buffers that are kept from chart to chart. chart.weight is left as it is.
+void pull_points(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
+                 const PullOptions& options, EditingChart& chart);
 
 }  // namespace normalshop

@@ -128,6 +128,9 @@ class TileCover {
   }
   void draw(const Rect& points);
   void finish(Image<Shown>& shown) const;
+  /// True, and shown is filled, where the tile has a point in every pixel, of which their direct
+  /// neighbours hide none: for splats that reach no further.
+  bool finish_plain(const Rect& tile, Image<Shown>& shown);
 
  private:
   void draw_point(int x, int y, const Splat& splat);
@@ -156,7 +159,7 @@ int TileCover::reach(const Rect& rect) {
       most = std::max(most, splats_.get(last).reach.maxCoeff());
     }
   }
-  return static_cast<int>(std::ceil(most + 0.5F));
+  return floor_to_int(most + 0.5F);  // points lie up to half a pixel off their pixels' centres
 }
 
 void TileCover::draw_pixel(std::size_t i, const Vec2f& offset, float depth, const Splat& splat) {
@@ -214,6 +217,56 @@ void TileCover::finish(Image<Shown>& shown) const {
   }
 }
 
+bool TileCover::finish_plain(const Rect& tile, Image<Shown>& shown) {
+  const Rect wide = grow(tile, 1);
+  if (intersect(wide, chart_.ids.depth.rect()) != wide) return false;
+  constexpr auto row = static_cast<std::size_t>(tile_side + 2);
+  std::array<std::array<float, row>, 3> right;  // depth steps of the row above, here and below
+  std::array<std::array<float, row>, 3> down;
+  const auto load = [&](int y) {
+    const std::uint32_t* ids = chart_.ids.triangle.row(y) + wide.x0;
+    std::array<float, row>& to_right = right[static_cast<std::size_t>(y) % 3];
+    std::array<float, row>& to_below = down[static_cast<std::size_t>(y) % 3];
+    Vec2f step = Vec2f::Zero();
+    std::uint32_t last = no_triangle;
+    for (std::size_t x = 0; x < static_cast<std::size_t>(wide.width()); ++x) {
+      if (ids[x] != last) {
+        if (ids[x] == no_triangle) return false;
+        last = ids[x];
+        step = splats_.get(last).depth_step;
+      }
+      to_right[x] = step.x();
+      to_below[x] = step.y();
+    }
+    return true;
+  };
+  if (!load(wide.y0) || !load(wide.y0 + 1)) return false;
+  const auto count = static_cast<std::size_t>(tile.width());
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    if (!load(y + 1)) return false;
+    std::array<float, row> front;
+    front.fill(nothing_near);
+    for (int j = -1; j <= 1; ++j) {
+      const float* depth = chart_.ids.depth.row(y + j) + wide.x0;
+      const float* to_right = right[static_cast<std::size_t>(y + j) % 3].data();
+      const float* to_below = down[static_cast<std::size_t>(y + j) % 3].data();
+      const auto below = static_cast<float>(-j);
+      for (std::size_t x = 0; x < count; ++x) {
+        const float a = depth[x] + to_right[x] + below * to_below[x];
+        const float b = depth[x + 1] + below * to_below[x + 1];
+        const float c = depth[x + 2] - to_right[x + 2] + below * to_below[x + 2];
+        front[x] = std::max(std::max(front[x], a), std::max(b, c));
+      }
+    }
+    const float* depth = chart_.ids.depth.row(y) + tile.x0;
+    float worst = nothing_near;
+    for (std::size_t x = 0; x < count; ++x) worst = std::max(worst, front[x] - depth[x]);
+    if (!(worst <= chart_.grid.pixel)) return false;
+  }
+  for (int y = tile.y0; y < tile.y1; ++y) std::fill_n(shown.row(y) + tile.x0, count, Shown::Point);
+  return true;
+}
+
 /// Single pixels between surface on opposite sides: where texels are crowded in one direction and
 /// far apart in the other, splats of those that lost their pixels are missing.
 void close_cracks(Image<Shown>& shown) {
@@ -257,12 +310,25 @@ Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingC
   });
   const int farthest = count > 0 ? *std::max_element(reaches.begin(), reaches.end()) : 0;
   const int around = (farthest + tile_side - 1) / tile_side;
+  const auto nearest_reach = [&](int row, int column) {
+    int most = 0;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows - 1); ++r) {
+      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns - 1); ++c) {
+        most = std::max(most, reaches[static_cast<std::size_t>(r * columns + c)]);
+      }
+    }
+    return most;
+  };
   Image<Shown> shown(all.x1, all.y1);
   parallel_for(count, 8, [&](std::size_t a, std::size_t b) {
     TileCover task(mesh, storage, chart, offsets);
     for (std::size_t i = a; i < b; ++i) {
       const int column = static_cast<int>(i) % columns;
       const int row = static_cast<int>(i) / columns;
+      if (around <= 1 && nearest_reach(row, column) <= 1 &&
+          task.finish_plain(tile(static_cast<int>(i)), shown)) {
+        continue;
+      }
       task.begin(tile(static_cast<int>(i)));
       for (int r = std::max(row - around, 0); r <= std::min(row + around, rows - 1); ++r) {
         for (int c = std::max(column - around, 0); c <= std::min(column + around, columns - 1);
