@@ -1,4 +1,6 @@
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "chart_fixtures.h"
@@ -46,8 +48,10 @@ ChartPair both_charts(const Mesh& mesh, const StorageAtlas& storage, const View&
   const ChartGrid grid = make_grid(view, pixel);
   ChartPair out{pull(mesh, storage, grid), pull_points(mesh, storage, grid)};
   find_texels(mesh, storage, out.triangles);
-  compute_weight(out.triangles, {});
-  compute_weight(out.points, {});
+  EffectiveOptions effective;
+  effective.step_falloff = 4.0F * pixel;
+  compute_weight(out.triangles, effective);
+  compute_weight(out.points, effective);
   return out;
 }
 
@@ -55,11 +59,11 @@ ChartPair both_charts(const Mesh& mesh, const StorageAtlas& storage, const View&
 struct Difference {
   int both = 0;
   int holes = 0;        ///< pixels that only triangles see, not at the rim
-  int outside = 0;      ///< pixels that only points see and that are no triangle's neighbours
-  int far_texels = 0;   ///< pixels whose texels are not neighbours
-  int front = 0;        ///< pixels that face the viewer within 70 degrees
-  double depth = 0.0;   ///< largest difference in pixels, of those
-  double normal = 0.0;  ///< mean angle of base normals
+  int outside = 0;      ///< pixels that only points see, more than a pixel away from any triangle
+  int well = 0;         ///< pixels in the middle of the effective chart
+  int far_texels = 0;   ///< of those: their texels are not neighbours
+  double depth = 0.0;   ///< of those: largest difference in pixels
+  double normal = 0.0;  ///< of those: mean angle of base normals
 };
 
 bool seen_around(const EditingChart& chart, int x, int y, bool all) {
@@ -87,7 +91,7 @@ int texels_apart(std::uint32_t a, std::uint32_t b, int size) {
   return std::max(along(p.x, q.x), along(p.y, q.y));
 }
 
-Difference difference(const ChartPair& charts, int size, int reach) {
+Difference difference(const ChartPair& charts, int size) {
   Difference out;
   const EditingChart& a = charts.triangles;
   const EditingChart& b = charts.points;
@@ -95,20 +99,19 @@ Difference difference(const ChartPair& charts, int size, int reach) {
     for (int x = 0; x < a.grid.width(); ++x) {
       const bool in_a = a.ids.triangle(x, y) != no_triangle;
       const bool in_b = b.ids.triangle(x, y) != no_triangle;
-      if (in_a && !in_b && seen_around(a, x, y, true)) {++out.holes; if (std::getenv("LEAK") != nullptr) std::printf("hole %d %d tri %u texel %u,%u z %.2f\n", x, y, a.ids.triangle(x,y), a.texel(x,y)%size, a.texel(x,y)/size, a.base_normal(x,y).z());}
+      if (in_a && !in_b && seen_around(a, x, y, true)) ++out.holes;
       if (in_b && !in_a && !seen_around(a, x, y, false)) ++out.outside;
       if (!in_a || !in_b) continue;
       ++out.both;
-      if (!(a.base_normal(x, y).z() > 0.34F)) continue;
-      ++out.front;
-      if (texels_apart(a.texel(x, y), b.texel(x, y), size) > reach) ++out.far_texels;
+      if (!(std::min(a.weight(x, y), b.weight(x, y)) > 0.5F)) continue;
+      ++out.well;
+      if (texels_apart(a.texel(x, y), b.texel(x, y), size) > 1) ++out.far_texels;
       const double apart = std::abs(a.ids.depth(x, y) - b.ids.depth(x, y)) / a.grid.pixel;
       out.depth = std::max(out.depth, apart);
-      if (std::getenv("LEAK") != nullptr && apart > 5) std::printf("leak %d %d apart %.1f tri %u / %u texel %u,%u / %u,%u z %.2f pz %.2f\n", x, y, apart, a.ids.triangle(x,y), b.ids.triangle(x,y), a.texel(x,y)%size, a.texel(x,y)/size, b.texel(x,y)%size,b.texel(x,y)/size, a.base_normal(x,y).z(), b.base_normal(x,y).z());
       out.normal += angle_degrees(a.base_normal(x, y), b.base_normal(x, y));
     }
   }
-  out.normal /= std::max(out.front, 1);
+  out.normal /= std::max(out.well, 1);
   return out;
 }
 
@@ -116,28 +119,194 @@ StorageAtlas noisy(const Mesh& mesh, int size) {
   return storage_of(mesh, noise_map(size, CodeType::U16));
 }
 
-void dump(const char* what, const Difference& d) {
-  std::printf("%s: both %d holes %d outside %d far %d front %d depth %.3f normal %.4f\n", what,
-              d.both, d.holes, d.outside, d.far_texels, d.front, d.depth, d.normal);
+void expect_agreement(const Mesh& mesh, int size, const Vec3f& direction, double degrees) {
+  const StorageAtlas storage = noisy(mesh, size);
+  const ChartPair charts = both_charts(mesh, storage, framing_view(mesh, direction), 300);
+  const Difference d = difference(charts, size);
+  SCOPED_TRACE("map of " + std::to_string(size) + " from x " + std::to_string(direction.x()));
+  EXPECT_GT(d.both, 20000);
+  EXPECT_GT(2 * d.well, d.both);
+  EXPECT_EQ(d.holes, 0);
+  EXPECT_LE(d.outside, size < 100 ? 5 : 0) << "ids may reach half a texel past a silhouette";
+  EXPECT_LT(d.far_texels, d.well / 40);
+  EXPECT_LT(d.depth, size > 500 ? 0.6 : 2.5) << "planes leave the surface within large texels";
+  EXPECT_LT(d.normal, degrees);
 }
 
-TEST(PointPull, explore) {
-  const Mesh plane = plane_grid(8);
-  const Mesh sphere = smooth_sphere(96, 48);
-  const Mesh torus = ring_torus(96, 48);
-  for (const int size : {64, 256, 512, 1024}) {
-    for (const Vec3f& direction : {Vec3f(0, 0, 1), Vec3f(0.5F, 0.3F, 0.8F)}) {
-      std::printf("size %d\n", size);
-      const auto go = [&](const char* what, const Mesh& mesh) {
-        const StorageAtlas storage = noisy(mesh, size);
-        const ChartPair charts = both_charts(mesh, storage, framing_view(mesh, direction), 300);
-        dump(what, difference(charts, size, 1));
-      };
-      go("plane", plane);
-      go("sphere", sphere);
-      go("torus", torus);
+/// Texels of about 5 pixels (on the sphere and the torus up to 15), 1.2 (4) and 0.4 (1.2).
+constexpr std::array<int, 3> map_sizes{64, 256, 800};
+
+TEST(PointPull, plane_as_by_triangles) {
+  for (const int size : map_sizes) {
+    expect_agreement(plane_grid(8), size, {0, 0, 1}, 1e-3);
+    expect_agreement(plane_grid(8), size, {0.5F, 0.3F, 0.8F}, 1e-3);
+  }
+}
+
+TEST(PointPull, sphere_as_by_triangles) {
+  for (const int size : map_sizes) {
+    expect_agreement(smooth_sphere(96, 48), size, {0, 0, 1}, 120.0 / size);
+    expect_agreement(smooth_sphere(96, 48), size, {0.5F, 0.3F, 0.8F}, 120.0 / size);
+  }
+}
+
+TEST(PointPull, torus_as_by_triangles) {
+  for (const int size : map_sizes) {
+    expect_agreement(ring_torus(96, 48), size, {0.1F, 1, 0.2F}, 200.0 / size);
+    expect_agreement(ring_torus(96, 48), size, {0.5F, 0.6F, 0.6F}, 200.0 / size);
+  }
+}
+
+TEST(PointPull, ids_end_with_an_open_surface) {
+  const Mesh mesh = hemisphere(48, 96);
+  const StorageAtlas storage = noisy(mesh, 256);
+  const ChartPair charts = both_charts(mesh, storage, framing_view(mesh, Vec3f::UnitZ()), 300);
+  const Difference d = difference(charts, 256);
+  EXPECT_GT(d.well, 30000);
+  EXPECT_EQ(d.outside, 0);
+  EXPECT_EQ(d.holes, 0);
+}
+
+TEST(PointPull, hidden_sheet_does_not_show) {
+  // Two parallel squares, the back one's texels ten times as fine.
+  const auto corner = [](float x, float y, float z, float u0, float part) {
+    return MeshBuilder::Corner{{x, y, z}, Vec3f::UnitZ(), {u0 + part * x, part * (1.0F - y)}};
+  };
+  MeshBuilder builder;
+  const auto sheet = [&](float z, float u0, float part) {
+    builder.quad(corner(0, 0, z, u0, part), corner(1, 0, z, u0, part), corner(1, 1, z, u0, part),
+                 corner(0, 1, z, u0, part));
+  };
+  sheet(0.0F, 0.8F, 0.08F);
+  sheet(-0.03F, 0.01F, 0.75F);
+  const Mesh mesh = builder.finish();
+  const StorageAtlas storage = noisy(mesh, 512);
+  for (const Vec3f& direction : {Vec3f(0, 0, 1), Vec3f(0.3F, 0.2F, 0.9F)}) {
+    const View view = framing_view(mesh, direction);
+    const ChartPair charts = both_charts(mesh, storage, view, 200);  // sheets 5 pixels apart
+    int front = 0;
+    int through = 0;
+    for (int y = 2; y < charts.triangles.grid.height() - 2; ++y) {
+      for (int x = 2; x < charts.triangles.grid.width() - 2; ++x) {
+        if (charts.triangles.ids.triangle(x, y) > 1) continue;
+        if (!seen_around(charts.triangles, x, y, true)) continue;
+        bool inside = true;  // not beside the front sheet's border
+        for (int j = -2; j <= 2; ++j) {
+          for (int i = -2; i <= 2; ++i) {
+            inside = inside && charts.triangles.ids.triangle(x + i, y + j) < 2;
+          }
+        }
+        if (!inside) continue;
+        ++front;
+        if (charts.points.ids.triangle(x, y) > 1) ++through;
+      }
+    }
+    EXPECT_GT(front, 15000);
+    EXPECT_EQ(through, 0);
+  }
+}
+
+template <class T>
+bool same_pixels(const Image<T>& a, const Image<T>& b) {
+  return a.rect() == b.rect() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+TEST(PointPull, same_bits_for_any_number_of_threads) {
+  const Mesh mesh = ring_torus(96, 48);
+  const StorageAtlas storage = noisy(mesh, 300);
+  const View view = framing_view(mesh, {0.5F, 0.6F, 0.6F});
+  const ChartGrid grid = make_grid(view, view.width / 400.0F);
+  const PullOptions options{.normals = true, .albedo = true};
+  const EditingChart many = pull_points(mesh, storage, grid, options);
+  const ThreadLimit limit(1);
+  const EditingChart one = pull_points(mesh, storage, grid, options);
+  EXPECT_TRUE(same_pixels(many.ids.triangle, one.ids.triangle));
+  EXPECT_TRUE(same_pixels(many.ids.depth, one.ids.depth));
+  EXPECT_TRUE(same_pixels(many.texel, one.texel));
+  EXPECT_TRUE(same_pixels(many.base_normal, one.base_normal));
+  EXPECT_TRUE(same_pixels(many.normal, one.normal));
+  EXPECT_TRUE(same_pixels(many.albedo, one.albedo));
+}
+
+/// Largest angle between the chart's normals and those that their texels hold.
+double worst_normal(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart) {
+  const TexelMap& map = storage.sets[0].texels;
+  double worst = 0.0;
+  for (int y = 0; y < chart.grid.height(); ++y) {
+    for (int x = 0; x < chart.grid.width(); ++x) {
+      const std::uint32_t triangle = chart.ids.triangle(x, y);
+      if (triangle == no_triangle) continue;
+      const TexelPlace at = texel_place(chart.texel(x, y), map.width());
+      const Vec3f n =
+          stored_normal(mesh, storage, at.x, at.y, map.surface_point(triangle, at.x, at.y));
+      worst = std::max(worst, static_cast<double>(
+                                  angle_degrees(chart.normal(x, y), chart.grid.view.to_chart(n))));
     }
   }
+  return worst;
+}
+
+TEST(PointPull, normals_are_those_of_the_texels) {
+  const Mesh mesh = smooth_sphere(48, 24);
+  const View view = framing_view(mesh, {0.5F, 0.3F, 0.8F});
+  for (const View& v : {view, mirrored(view, 0, 0.0F)}) {
+    const ChartGrid grid = make_grid(v, v.width / 200.0F);
+    const StorageAtlas tangent = noisy(mesh, 128);
+    EXPECT_LT(worst_normal(mesh, tangent, pull_points(mesh, tangent, grid)), 0.05);
+    const StorageAtlas object = storage_of(mesh, 128, NormalSpace::Object, [](const Vec3f& p) {
+      return (p + 0.2F * Vec3f(p.y(), p.z(), p.x())).normalized();
+    });
+    EXPECT_LT(worst_normal(mesh, object, pull_points(mesh, object, grid)), 0.05);
+  }
+}
+
+TEST(PointPull, mirrored_halves_share_texels) {
+  const Mesh mesh = mirrored_pair(4);
+  const StorageAtlas storage = noisy(mesh, 64);
+  const View view = framing_view(mesh, Vec3f::UnitZ());
+  const ChartPair charts = both_charts(mesh, storage, view, 200);
+  const Difference d = difference(charts, 64);
+  EXPECT_EQ(d.holes, 0);
+  EXPECT_GT(d.well, 15000);
+  EXPECT_EQ(d.far_texels, 0);
+  EXPECT_LT(worst_normal(mesh, storage, charts.points), 0.05);
+}
+
+TEST(PointPull, holes_take_the_nearest_point) {
+  constexpr int side = 60;
+  Image<Shown> shown(side, side, Shown::Hole);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const std::uint32_t h = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 3);
+      if (h % 40 == 0) shown(x, y) = Shown::Point;
+    }
+  }
+  const Image<std::int32_t> nearest = nearest_points(shown);
+  const auto distance = [](int x, int y, int point) {
+    return std::max(std::abs(point % side - x), std::abs(point / side - y));
+  };
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      int least = side;
+      for (int p = 0; p < side * side; ++p) {
+        if (shown.data()[p] == Shown::Point) least = std::min(least, distance(x, y, p));
+      }
+      ASSERT_GE(nearest(x, y), 0);
+      ASSERT_EQ(shown.data()[nearest(x, y)], Shown::Point);
+      EXPECT_EQ(distance(x, y, nearest(x, y)), least) << x << " " << y;
+    }
+  }
+}
+
+TEST(PointPull, nothing_is_not_filled) {
+  Image<Shown> shown(5, 1, Shown::Hole);
+  shown(0, 0) = Shown::Point;
+  shown(2, 0) = Shown::Nothing;
+  const Image<std::int32_t> nearest = nearest_points(shown);
+  EXPECT_EQ(nearest(0, 0), 0);
+  EXPECT_EQ(nearest(1, 0), 0);
+  EXPECT_EQ(nearest(2, 0), -1);
+  EXPECT_EQ(nearest(3, 0), -1) << "no path through holes leads there";
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 
 #include "normalshop/chart/effective.h"
 #include "normalshop/chart/extend.h"
+#include "normalshop/chart/point_pull.h"
 #include "normalshop/chart/resolution.h"
+#include "normalshop/chart/update_storage.h"
 #include "normalshop/core/error.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/stopwatch.h"
@@ -100,17 +102,18 @@ bool has_colors(const StorageAtlas& storage) {
                      [](const StorageSet& set) { return !set.albedo.empty(); });
 }
 
-/// Rasterises, pulls what the operator needs and weighs.
+/// Pulls what the operator and the update need, and weighs.
 EditingChart build_chart(const Edit& edit, const Mesh& mesh, const StorageAtlas& storage,
-                         const ChartGrid& grid, float model_size) {
-  EditingChart chart;
-  chart.grid = grid;
-  Rasterizer().rasterize(mesh, chart.grid, chart.ids);
+                         const ChartGrid& grid, float model_size, const TransferOptions& transfer) {
   PullOptions pulled;
   const EditOperator& operation = *edit.operation;
-  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep);
+  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep) ||
+                   transfer.update != Update::Gather;
   pulled.albedo = operation.reads_colors() && has_colors(storage);
-  pull_attributes(mesh, storage, chart, pulled);
+  const bool points = transfer.transfer == Transfer::Point;
+  EditingChart chart =
+      points ? pull_points(mesh, storage, grid, pulled) : pull(mesh, storage, grid, pulled);
+  if (!points && transfer.update != Update::Gather) find_texels(mesh, storage, chart);
   EffectiveOptions effective;
   effective.full_angle = edit.effective.full;
   effective.zero_angle = edit.effective.zero;
@@ -150,6 +153,7 @@ PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams,
 
 /// An edit in one view before its push.
 struct Prepared {
+  TransferOptions transfer;
   EditingChart chart;
   OperatorResult result;
   bool replaces = false;  ///< its coverage counts
@@ -173,7 +177,8 @@ void operate(const Edit& edit, const EditPlace& place, Prepared& prepared) {
   check_on_surface(edit, input.strokes, chart, input.region, place.model);
   Source source;
   if (edit.operation->reads() || edit.operation->picks()) source = make_source(edit, chart);
-  chart.normal = {};
+  const bool gather = prepared.transfer.update == Update::Gather;
+  if (gather) chart.normal = {};
   if (edit.operation->reads()) input.source = source.slopes;
   if (edit.operation->picks()) {
     input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
@@ -186,21 +191,23 @@ void operate(const Edit& edit, const EditPlace& place, Prepared& prepared) {
   if (!source.grazing.empty()) {
     replace_grazing(source.grazing, source.slopes, chart.base_normal, edit.mode, prepared.result);
   }
-  chart.base_normal = {};
+  if (gather) chart.base_normal = {};
   chart.albedo = {};
 }
 
-Prepared prepare(const Edit& edit, const View& view, const Mesh& mesh,
-                 const StorageAtlas& storage) {
+Prepared prepare(const Edit& edit, const View& view, const Mesh& mesh, const StorageAtlas& storage,
+                 const TransferOptions& transfer) {
   Stopwatch watch;
   const Bounds box = bounds(mesh);
   check_near_view(edit, view);
   const EditPlace place = find_place(edit, view, box);
   const float texel = texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high);
   Prepared prepared;
-  prepared.chart =
-      build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel), box.diagonal());
+  prepared.transfer = transfer;
+  prepared.chart = build_chart(edit, mesh, storage, choose_grid(edit, view, place, texel),
+                               box.diagonal(), transfer);
   EditReport& report = prepared.report;
+  report.transfer = transfer;
   const ChartGrid& grid = prepared.chart.grid;
   report.chart_width = grid.width();
   report.chart_height = grid.height();
@@ -217,8 +224,12 @@ void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge>
   Stopwatch watch;
   ChartEdit change{edit.mode, prepared.result.change, {}, prepared.result.region};
   if (prepared.replaces) change.coverage = prepared.result.coverage;
-  if (edit.strength > 0.0F) {
+  const Update update = prepared.transfer.update;
+  if (edit.strength > 0.0F && update == Update::Gather) {
     prepared.report.pushed = push_and_fit(mesh, seams, prepared.chart, change, storage);
+  } else if (edit.strength > 0.0F) {
+    prepared.report.pushed = update_storage(mesh, prepared.chart, change, update, storage);
+    prepared.report.lost = lost_texels(mesh, prepared.chart, change.region, storage);
   }
   prepared.report.times.push = watch.lap();
 }
@@ -226,6 +237,7 @@ void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge>
 /// Both sides of a mirrored edit; the chart is that of the first.
 void add(const EditReport& other, EditReport& report) {
   report.coarser_than_texels = report.coarser_than_texels || other.coarser_than_texels;
+  report.lost += other.lost;
   report.pushed.visited += other.pushed.visited;
   report.pushed.changed += other.pushed.changed;
   report.pushed.largest_change =
@@ -238,14 +250,14 @@ void add(const EditReport& other, EditReport& report) {
 }  // namespace
 
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      StorageAtlas& storage) {
+                      StorageAtlas& storage, const TransferOptions& transfer) {
   const View view = resolve(edit.view, mesh);
-  Prepared side = prepare(edit, view, mesh, storage);
+  Prepared side = prepare(edit, view, mesh, storage, transfer);
   std::optional<Prepared> other;  // before any push: both see what was there, and throw in time
   if (edit.mirror) {
     const View image = mirrored(view, static_cast<int>(edit.mirror->axis), edit.mirror->at);
     try {
-      other = prepare(edit, image, mesh, storage);
+      other = prepare(edit, image, mesh, storage, transfer);
     } catch (const InvalidInput& error) {
       throw InvalidInput(edit.path + ".mirror: on the other side, " + error.what());
     }

@@ -9,6 +9,6 @@ namespace normalshop {
 /// The one way of an edit: view -> editing chart -> operator -> edited chart -> storage atlas.
 /// `seams` are those of the whole mesh. Throws before anything changes.
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      StorageAtlas& storage);
+                      StorageAtlas& storage, const TransferOptions& transfer = {});
 
 }  // namespace normalshop

@@ -4,6 +4,7 @@
 
 #include "normalshop/chart/push.h"
 #include "normalshop/chart/storage.h"
+#include "normalshop/chart/transfer.h"
 #include "normalshop/core/progress.h"
 #include "normalshop/document/edit.h"
 #include "normalshop/surface/seams.h"
@@ -27,6 +28,9 @@ struct EditReport {
   bool coarser_than_texels = false;
   PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
   EditTimes times;
+  TransferOptions transfer = {};
+  /// Texels that the edit reached and the update did not write: 0 with Update::Gather.
+  std::size_t lost = 0;
 };
 
 /// A model, its storage atlas and the edits made to it. All changes go through apply(): the command
@@ -51,7 +55,7 @@ class Document {
 
   /// Applies an edit and adds it to the log. Throws InvalidInput when a stroke does not meet the
   /// surface that its view shows; the document is unchanged then.
-  EditReport apply(const Edit& edit);
+  EditReport apply(const Edit& edit, const TransferOptions& transfer = {});
 
  private:
   Mesh mesh_;
