@@ -190,15 +190,18 @@ void PointPull::fill_frames(NormalSpace space, TexelLanes& lanes) const {
 void PointPull::read_stored(const NormalMap& map, const TexelLanes& lanes,
                             PerLane<Vec3f>& stored) const {
   const auto count = static_cast<std::size_t>(lanes.batch.count);
-  const TexelPlace first = texel_place(lanes.texels[0], map.width());
-  if (!lanes.listed && lanes.texels[count - 1] - lanes.texels[0] + 1 == count) {
-    map.read_vectors(first.x, lanes.batch.count, first.y, stored.data());
+  if (lanes.listed) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const TexelPlace at = texel_place(lanes.texels[i], map.width());
+      stored[i] = map.vector(at.x, at.y);
+    }
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const TexelPlace at = texel_place(lanes.texels[i], map.width());
-    stored[i] = map.vector(at.x, at.y);
-  }
+  const TexelPlace first = texel_place(lanes.texels[0], map.width());
+  PerLane<Vec3f> row;
+  map.read_vectors(first.x, static_cast<int>(lanes.texels[count - 1] - lanes.texels[0]) + 1,
+                   first.y, row.data());
+  for (std::size_t i = 0; i < count; ++i) stored[i] = row[lanes.texels[i] - lanes.texels[0]];
 }
 
 /// Writes the points that won their pixels: each pixel's is one.
