@@ -44,6 +44,7 @@ struct Splat {
   Vec2f depth_step = Vec2f::Zero();
   float wide_back = 0.0F;  ///< depth by which what is not the texel's own cell is behind the plane
   float ring_back = 0.0F;  ///< likewise the ring
+  bool widened = false;    ///< to_wide differs from to_texel
 
   void load(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
             std::uint32_t id) {
@@ -66,6 +67,7 @@ struct Splat {
     adjugate << wide(1, 1), -wide(0, 1), -wide(1, 0), wide(0, 0);
     to_wide = adjugate / wide_area;
     wide_back = 0.5F * triangle.steepness;
+    widened = !widen.isIdentity(1e-3F);
     ring_back =
         std::abs(depth_step.dot(wide.col(0))) + std::abs(depth_step.dot(wide.col(1))) + grid.pixel;
     if (!to_texel.allFinite() || !to_wide.allFinite() || !std::isfinite(ring_back)) return;
@@ -104,6 +106,10 @@ unsigned eighth(float dx, float dy) {
   return right | below | (std::abs(dx) > std::abs(dy) ? 1U : 0U);
 }
 
+bool outside_cell(const Splat& splat, float dx, float dy) {
+  return (splat.to_texel * Vec2f(dx, dy)).cwiseAbs().maxCoeff() > inner_cell;
+}
+
 bool has_opposites(unsigned eighths) {
   for (unsigned i = 0; i < 8; ++i) {
     if ((eighths >> i & 1U) != 0 && (eighths >> (i ^ 6U) & 1U) != 0) return true;
@@ -134,7 +140,6 @@ class TileCover {
 
  private:
   void draw_point(int x, int y, const Splat& splat);
-  void draw_pixel(std::size_t i, const Vec2f& offset, float depth, const Splat& splat);
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>((y - tile_.y0) * tile_side + x - tile_.x0);
   }
@@ -162,35 +167,37 @@ int TileCover::reach(const Rect& rect) {
   return floor_to_int(most + 0.5F);  // points lie up to half a pixel off their pixels' centres
 }
 
-void TileCover::draw_pixel(std::size_t i, const Vec2f& offset, float depth, const Splat& splat) {
-  const float from_middle = (splat.to_wide * offset).cwiseAbs().maxCoeff();
-  if (from_middle > ring) return;
-  if (from_middle > inner_cell) {
-    depth -= splat.ring_back;
-    sides_[i] = static_cast<std::uint8_t>(sides_[i] | 1U << eighth(offset.x(), offset.y()));
-  } else {
-    inner_[i] = true;
-    if ((splat.to_texel * offset).cwiseAbs().maxCoeff() > inner_cell) depth -= splat.wide_back;
-  }
-  front_[i] = std::max(front_[i], depth);
-}
-
 void TileCover::draw_point(int x, int y, const Splat& splat) {
-  const Vec2f middle(static_cast<float>(x) + PointOffset::unit * offsets_(x, y).x,
-                     static_cast<float>(y) + PointOffset::unit * offsets_(x, y).y);
-  const Vec2f low = middle - splat.reach;
-  const Vec2f high = middle + splat.reach;
-  Rect box{-floor_to_int(-low.x()), -floor_to_int(-low.y()), floor_to_int(high.x()) + 1,
-           floor_to_int(high.y()) + 1};
+  const float right = PointOffset::unit * offsets_(x, y).x;  // of the splat's middle
+  const float down = PointOffset::unit * offsets_(x, y).y;
+  Rect box{x - floor_to_int(splat.reach.x() - right), y - floor_to_int(splat.reach.y() - down),
+           x + floor_to_int(splat.reach.x() + right) + 1,
+           y + floor_to_int(splat.reach.y() + down) + 1};
   box = intersect(box, tile_);
   const float depth = chart_.ids.depth(x, y);
+  const Mat2f& wide = splat.to_wide;
   for (int j = box.y0; j < box.y1; ++j) {
-    const auto down = static_cast<float>(j - y);
-    for (int i = box.x0; i < box.x1; ++i) {
-      const auto right = static_cast<float>(i - x);
-      const Vec2f offset(static_cast<float>(i) - middle.x(), static_cast<float>(j) - middle.y());
-      draw_pixel(index(i, j), offset,
-                 depth + right * splat.depth_step.x() + down * splat.depth_step.y(), splat);
+    const auto dy = static_cast<float>(j - y);
+    const float oy = dy - down;
+    const float wide_x = wide(0, 1) * oy;
+    const float wide_y = wide(1, 1) * oy;
+    const float row_depth = depth + dy * splat.depth_step.y();
+    std::size_t k = index(box.x0, j);
+    for (int i = box.x0; i < box.x1; ++i, ++k) {
+      const auto dx = static_cast<float>(i - x);
+      const float ox = dx - right;
+      const float from_middle =
+          std::max(std::abs(wide(0, 0) * ox + wide_x), std::abs(wide(1, 0) * ox + wide_y));
+      if (from_middle > ring) continue;
+      float z = row_depth + dx * splat.depth_step.x();
+      if (from_middle > inner_cell) {
+        z -= splat.ring_back;
+        sides_[k] = static_cast<std::uint8_t>(sides_[k] | 1U << eighth(ox, oy));
+      } else {
+        inner_[k] = true;
+        if (splat.widened && outside_cell(splat, ox, oy)) z -= splat.wide_back;
+      }
+      front_[k] = std::max(front_[k], z);
     }
   }
 }
