@@ -257,9 +257,9 @@ void PointPull::clear(std::size_t pixel) {
 }
 
 void PointPull::copy(std::size_t from, std::size_t to, TriangleCache<PushTriangle>& triangles) {
-  const auto width = static_cast<std::size_t>(chart_.grid.width());
-  const Vec2f offset(static_cast<float>(to % width) - static_cast<float>(from % width),
-                     static_cast<float>(to / width) - static_cast<float>(from / width));
+  const TexelPlace there = texel_place(static_cast<std::uint32_t>(from), chart_.grid.width());
+  const TexelPlace here = texel_place(static_cast<std::uint32_t>(to), chart_.grid.width());
+  const Vec2f offset(static_cast<float>(here.x - there.x), static_cast<float>(here.y - there.y));
   const std::uint32_t triangle = chart_.ids.triangle.data()[from];
   chart_.ids.triangle.data()[to] = triangle;
   chart_.ids.depth.data()[to] =

@@ -193,8 +193,8 @@ void TileUpdate::sample(std::uint32_t pixel) {
   const TexelPlace at = texel_place(texel, map.width());
   const SurfacePoint p = map.surface_point(frame_triangle(map, texel, triangle), at.x, at.y);
   const Vec3f center = triangles_.get(p.triangle).points * Vec3f(1.0F, p.b1, p.b2);
-  const auto width = static_cast<std::uint32_t>(chart_.grid.width());
-  const Vec2f here(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
+  const TexelPlace q = texel_place(pixel, chart_.grid.width());
+  const Vec2f here(static_cast<float>(q.x), static_cast<float>(q.y));
   // Whatever a degenerate triangle gives, the pixel shows the texel.
   constexpr float farthest = 1e18F;
   const float distance = (center.head<2>() - here).squaredNorm();
