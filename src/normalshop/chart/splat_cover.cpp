@@ -139,7 +139,15 @@ class TileCover {
   bool finish_plain(const Rect& tile, Image<Shown>& shown);
 
  private:
+  /// Depth steps of the planes of a row's points.
+  struct StepRow {
+    std::array<float, tile_side + 2> right;
+    std::array<float, tile_side + 2> down;
+  };
+
   void draw_point(int x, int y, const Splat& splat);
+  bool load_steps(const Rect& wide, int y);
+  float rise_over(const Rect& tile, int y) const;
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>((y - tile_.y0) * tile_side + x - tile_.x0);
   }
@@ -147,6 +155,7 @@ class TileCover {
   const EditingChart& chart_;
   const Image<PointOffset>& offsets_;
   SplatCache splats_;
+  std::array<StepRow, 3> steps_;  // of a row and those beside it
   Rect tile_;
   std::array<float, tile_side * tile_side> front_;         // depth of what the splats show
   std::array<std::uint8_t, tile_side * tile_side> sides_;  // eighths from which rings cover
@@ -227,51 +236,54 @@ void TileCover::finish(Image<Shown>& shown) const {
 bool TileCover::finish_plain(const Rect& tile, Image<Shown>& shown) {
   const Rect wide = grow(tile, 1);
   if (intersect(wide, chart_.ids.depth.rect()) != wide) return false;
-  constexpr auto row = static_cast<std::size_t>(tile_side + 2);
-  std::array<std::array<float, row>, 3> right;  // depth steps of the row above, here and below
-  std::array<std::array<float, row>, 3> down;
-  const auto load = [&](int y) {
-    const std::uint32_t* ids = chart_.ids.triangle.row(y) + wide.x0;
-    std::array<float, row>& to_right = right[static_cast<std::size_t>(y) % 3];
-    std::array<float, row>& to_below = down[static_cast<std::size_t>(y) % 3];
-    Vec2f step = Vec2f::Zero();
-    std::uint32_t last = no_triangle;
-    for (std::size_t x = 0; x < static_cast<std::size_t>(wide.width()); ++x) {
-      if (ids[x] != last) {
-        if (ids[x] == no_triangle) return false;
-        last = ids[x];
-        step = splats_.get(last).depth_step;
-      }
-      to_right[x] = step.x();
-      to_below[x] = step.y();
-    }
-    return true;
-  };
-  if (!load(wide.y0) || !load(wide.y0 + 1)) return false;
-  const auto count = static_cast<std::size_t>(tile.width());
+  if (!load_steps(wide, wide.y0) || !load_steps(wide, wide.y0 + 1)) return false;
   for (int y = tile.y0; y < tile.y1; ++y) {
-    if (!load(y + 1)) return false;
-    std::array<float, row> front;
-    front.fill(nothing_near);
-    for (int j = -1; j <= 1; ++j) {
-      const float* depth = chart_.ids.depth.row(y + j) + wide.x0;
-      const float* to_right = right[static_cast<std::size_t>(y + j) % 3].data();
-      const float* to_below = down[static_cast<std::size_t>(y + j) % 3].data();
-      const auto below = static_cast<float>(-j);
-      for (std::size_t x = 0; x < count; ++x) {
-        const float a = depth[x] + to_right[x] + below * to_below[x];
-        const float b = depth[x + 1] + below * to_below[x + 1];
-        const float c = depth[x + 2] - to_right[x + 2] + below * to_below[x + 2];
-        front[x] = std::max(std::max(front[x], a), std::max(b, c));
-      }
-    }
-    const float* depth = chart_.ids.depth.row(y) + tile.x0;
-    float worst = nothing_near;
-    for (std::size_t x = 0; x < count; ++x) worst = std::max(worst, front[x] - depth[x]);
-    if (!(worst <= chart_.grid.pixel)) return false;
+    if (!load_steps(wide, y + 1) || !(rise_over(tile, y) <= chart_.grid.pixel)) return false;
   }
-  for (int y = tile.y0; y < tile.y1; ++y) std::fill_n(shown.row(y) + tile.x0, count, Shown::Point);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    std::fill_n(shown.row(y) + tile.x0, tile.width(), Shown::Point);
+  }
   return true;
+}
+
+/// The depth steps of a row's points. False where a pixel has none.
+bool TileCover::load_steps(const Rect& wide, int y) {
+  const std::uint32_t* ids = chart_.ids.triangle.row(y) + wide.x0;
+  StepRow& steps = steps_[static_cast<std::size_t>(y) % steps_.size()];
+  Vec2f step = Vec2f::Zero();
+  std::uint32_t last = no_triangle;
+  for (std::size_t x = 0; x < static_cast<std::size_t>(wide.width()); ++x) {
+    if (ids[x] == no_triangle) return false;
+    if (ids[x] != last) {
+      last = ids[x];
+      step = splats_.get(last).depth_step;
+    }
+    steps.right[x] = step.x();
+    steps.down[x] = step.y();
+  }
+  return true;
+}
+
+/// By how much the planes of the points around come nearer than a row's points, at most.
+float TileCover::rise_over(const Rect& tile, int y) const {
+  std::array<float, tile_side> front;
+  front.fill(nothing_near);
+  const auto count = static_cast<std::size_t>(tile.width());
+  for (int j = -1; j <= 1; ++j) {
+    const float* depth = chart_.ids.depth.row(y + j) + tile.x0 - 1;
+    const StepRow& steps = steps_[static_cast<std::size_t>(y + j) % steps_.size()];
+    const auto below = static_cast<float>(-j);
+    for (std::size_t x = 0; x < count; ++x) {
+      const float a = depth[x] + steps.right[x] + below * steps.down[x];
+      const float b = depth[x + 1] + below * steps.down[x + 1];
+      const float c = depth[x + 2] - steps.right[x + 2] + below * steps.down[x + 2];
+      front[x] = std::max(std::max(front[x], a), std::max(b, c));
+    }
+  }
+  const float* depth = chart_.ids.depth.row(y) + tile.x0;
+  float most = nothing_near;
+  for (std::size_t x = 0; x < count; ++x) most = std::max(most, front[x] - depth[x]);
+  return most;
 }
 
 /// Single pixels between surface on opposite sides: where texels are crowded in one direction and
@@ -297,57 +309,67 @@ void close_cracks(Image<Shown>& shown) {
   }
 }
 
+/// The chart's tiles, row after row, and how far their splats reach.
+struct Tiles {
+  Rect all;
+  int columns;
+  int rows;
+  std::vector<int> reaches;
+
+  explicit Tiles(const Rect& chart)
+      : all(chart),
+        columns((chart.x1 + tile_side - 1) / tile_side),
+        rows((chart.y1 + tile_side - 1) / tile_side),
+        reaches(static_cast<std::size_t>(columns * rows), 0) {}
+
+  Rect rect(int i) const {
+    const int x = i % columns * tile_side;
+    const int y = i / columns * tile_side;
+    return intersect({x, y, x + tile_side, y + tile_side}, all);
+  }
+  /// visit(other, its reach) for the tiles up to `around` tiles away.
+  template <class Visit>
+  void near(int i, int around, const Visit& visit) const {
+    const int row = i / columns;
+    const int column = i % columns;
+    for (int r = std::max(row - around, 0); r <= std::min(row + around, rows - 1); ++r) {
+      for (int c = std::max(column - around, 0); c <= std::min(column + around, columns - 1); ++c) {
+        visit(r * columns + c, reaches[static_cast<std::size_t>(r * columns + c)]);
+      }
+    }
+  }
+};
+
+void cover_tile(const Tiles& tiles, int i, int around, TileCover& task, Image<Shown>& shown) {
+  const Rect tile = tiles.rect(i);
+  int farthest = 0;
+  tiles.near(i, around, [&](int, int reach) { farthest = std::max(farthest, reach); });
+  if (farthest <= 1 && task.finish_plain(tile, shown)) return;
+  task.begin(tile);
+  tiles.near(i, around, [&](int other, int reach) {
+    task.draw(intersect(tiles.rect(other), grow(tile, reach)));
+  });
+  task.finish(shown);
+}
+
 }  // namespace
 
 Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
                    const Image<PointOffset>& offsets) {
-  const Rect all = chart.ids.triangle.rect();
-  const int columns = (all.x1 + tile_side - 1) / tile_side;
-  const int rows = (all.y1 + tile_side - 1) / tile_side;
-  const auto tile = [&](int i) {
-    const int x = i % columns * tile_side;
-    const int y = i / columns * tile_side;
-    return intersect({x, y, x + tile_side, y + tile_side}, all);
+  Tiles tiles(chart.ids.triangle.rect());
+  const auto each_tile = [&](const auto& visit) {
+    parallel_for(tiles.reaches.size(), 8, [&](std::size_t begin, std::size_t end) {
+      TileCover task(mesh, storage, chart, offsets);
+      for (std::size_t i = begin; i < end; ++i) visit(task, static_cast<int>(i));
+    });
   };
-  const auto count = static_cast<std::size_t>(columns * rows);
-  std::vector<int> reaches(count);
-  parallel_for(count, 8, [&](std::size_t a, std::size_t b) {
-    TileCover task(mesh, storage, chart, offsets);
-    for (std::size_t i = a; i < b; ++i) reaches[i] = task.reach(tile(static_cast<int>(i)));
+  each_tile([&](TileCover& task, int i) {
+    tiles.reaches[static_cast<std::size_t>(i)] = task.reach(tiles.rect(i));
   });
-  const int farthest = count > 0 ? *std::max_element(reaches.begin(), reaches.end()) : 0;
+  const int farthest = *std::max_element(tiles.reaches.begin(), tiles.reaches.end());
   const int around = (farthest + tile_side - 1) / tile_side;
-  const auto nearest_reach = [&](int row, int column) {
-    int most = 0;
-    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows - 1); ++r) {
-      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns - 1); ++c) {
-        most = std::max(most, reaches[static_cast<std::size_t>(r * columns + c)]);
-      }
-    }
-    return most;
-  };
-  Image<Shown> shown(all.x1, all.y1);
-  parallel_for(count, 8, [&](std::size_t a, std::size_t b) {
-    TileCover task(mesh, storage, chart, offsets);
-    for (std::size_t i = a; i < b; ++i) {
-      const int column = static_cast<int>(i) % columns;
-      const int row = static_cast<int>(i) / columns;
-      if (around <= 1 && nearest_reach(row, column) <= 1 &&
-          task.finish_plain(tile(static_cast<int>(i)), shown)) {
-        continue;
-      }
-      task.begin(tile(static_cast<int>(i)));
-      for (int r = std::max(row - around, 0); r <= std::min(row + around, rows - 1); ++r) {
-        for (int c = std::max(column - around, 0); c <= std::min(column + around, columns - 1);
-             ++c) {
-          const int other = r * columns + c;
-          const int reach = reaches[static_cast<std::size_t>(other)];
-          task.draw(intersect(tile(other), grow(tile(static_cast<int>(i)), reach)));
-        }
-      }
-      task.finish(shown);
-    }
-  });
+  Image<Shown> shown(tiles.all.x1, tiles.all.y1);
+  each_tile([&](TileCover& task, int i) { cover_tile(tiles, i, around, task, shown); });
   close_cracks(shown);
   return shown;
 }
