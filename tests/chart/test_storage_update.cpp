@@ -202,6 +202,21 @@ TEST(StorageUpdate, mirrored_halves_and_views) {
   }
 }
 
+TEST(StorageUpdate, half_that_shares_its_texels) {
+  const Mesh mesh = mirrored_pair(4);
+  const StorageAtlas before = storage_of(mesh, noise_map(64, CodeType::U16));
+  const View left = make_view(Vec3f::UnitZ(), Vec3f::UnitY(), {-0.5F, 0.5F, 0.0F}, 0.9F, 0.9F);
+  for (const Transfer transfer : both_transfers) {
+    const EditingChart chart = transfer_chart(mesh, before, left, 1.0F / 192.0F, transfer);
+    const EditImages no_change = constant_edit(chart, Vec2f::Zero());
+    StorageAtlas after = before;
+    const PushResult result = update_storage(mesh, chart, no_change.edit(), Update::Point, after);
+    EXPECT_GT(result.changed, 3000U);
+    EXPECT_LT(result.largest_change, transfer == Transfer::Point ? 0.05F : 1.0F)
+        << "the frame is that of the half that the chart shows";
+  }
+}
+
 TEST(StorageUpdate, same_bits_for_any_number_of_threads) {
   const Mesh mesh = smooth_sphere(48, 24);
   const StorageAtlas before = storage_of(mesh, noise_map(256, CodeType::U16));
