@@ -27,6 +27,19 @@ struct Landing {
   PerLane<PointOffset> offset;   ///< of the point from the pixel's centre
 };
 
+/// Has the texel a neighbour that no triangle owns? Maps end at their sides.
+bool at_border(const Image<std::uint32_t>& owner, std::uint32_t texel) {
+  const TexelPlace at = texel_place(texel, owner.width());
+  const Rect around{at.x - 1, at.y - 1, at.x + 2, at.y + 2};
+  if (intersect(around, owner.rect()) != around) return true;
+  bool free = false;
+  for (int y = around.y0; y < around.y1; ++y) {
+    const std::uint32_t* row = owner.row(y) + at.x;
+    free = free || row[-1] == no_triangle || row[0] == no_triangle || row[1] == no_triangle;
+  }
+  return free;
+}
+
 class PointPull {
  public:
   PointPull(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
@@ -158,7 +171,7 @@ void PointPull::land(const TexelLanes& lanes, std::uint32_t first, Landing& out)
     out.key[i] = static_cast<std::uint64_t>(steps) << 40U | off << 32U | point;
     out.depth[i] = depth;
     out.offset[i] = {static_cast<std::int8_t>(dx / PointOffset::unit),
-                     static_cast<std::int8_t>(dy / PointOffset::unit)};
+                     static_cast<std::int8_t>(dy / PointOffset::unit), false};
   }
 }
 
@@ -229,6 +242,7 @@ void PointPull::show(std::size_t set, TexelLanes& lanes, const Landing& landing)
     chart_.ids.depth.data()[pixel] = landing.depth[i];
     chart_.texel.data()[pixel] = lanes.texels[i];
     offsets_.data()[pixel] = landing.offset[i];
+    offsets_.data()[pixel].at_border = at_border(storage.texels.owner(), lanes.texels[i]);
     const Vec3f base = batch.base.get(lane).normalized();
     chart_.base_normal.data()[pixel] = base;
     if (options_.normals) {

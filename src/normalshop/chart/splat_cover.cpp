@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "normalshop/chart/texel_batch.h"
+#include "normalshop/chart/splat.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
 
@@ -15,89 +15,10 @@ namespace normalshop {
 namespace {
 
 constexpr int tile_side = 64;
-constexpr float largest_splat = 128.0F;  // pixels from its middle
-constexpr float inner_cell = 0.6F;       // texels from the middle
+constexpr float inner_cell = 0.6F;  // texels from the middle
 constexpr float ring = 1.0F;
+constexpr float border_ring = 2.0F;
 constexpr float nothing_near = -std::numeric_limits<float>::infinity();
-
-/// Stretches the plane so that nothing in `cell` (columns: its sides) is narrower than a pixel.
-Mat2f widening(const Mat2f& cell) {
-  const Mat2f a = cell * cell.transpose();
-  const float middle = 0.5F * (a(0, 0) + a(1, 1));
-  const float half = 0.5F * (a(0, 0) - a(1, 1));
-  const float radius = std::sqrt(half * half + a(0, 1) * a(0, 1));
-  Vec2f axis(half + radius, a(0, 1));  // the longer
-  if (half < 0.0F) axis = {a(0, 1), radius - half};
-  axis = radius > 0.0F ? Vec2f(axis.normalized()) : Vec2f(1.0F, 0.0F);
-  const float area = std::abs(cell(0, 0) * cell(1, 1) - cell(0, 1) * cell(1, 0));
-  const float longer = std::sqrt(middle + radius);
-  const float along = std::max(1.0F, 1.0F / longer);
-  const float across = std::max(1.0F, longer / area);
-  return across * Mat2f::Identity() + (along - across) * axis * axis.transpose();
-}
-
-/// The texels of one triangle as splats. Offsets in pixels run down.
-struct Splat {
-  Mat2f to_texel = Mat2f::Zero();  ///< offsets in pixels to offsets in texels
-  Mat2f to_wide = Mat2f::Zero();   ///< the same where texels are at least as wide as pixels
-  Vec2f reach = Vec2f::Zero();     ///< half the box around the ring, pixels
-  Vec2f depth_step = Vec2f::Zero();
-  float wide_back = 0.0F;  ///< depth by which what is not the texel's own cell is behind the plane
-  float ring_back = 0.0F;  ///< likewise the ring
-  bool widened = false;    ///< to_wide differs from to_texel
-
-  void load(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid,
-            std::uint32_t id) {
-    PushTriangle triangle;
-    triangle.load(mesh, grid, id);
-    const TexelAffine& affine = storage.sets[mesh.texture_sets[id]].texels.affines()[id];
-    Mat2f cell;
-    cell.col(0) = (triangle.points.rightCols<2>() * affine.db_dx).head<2>();
-    cell.col(1) = (triangle.points.rightCols<2>() * affine.db_dy).head<2>();
-    depth_step = triangle.depth_step;
-    reach.setZero();
-    const float area = cell(0, 0) * cell(1, 1) - cell(0, 1) * cell(1, 0);
-    if (!(std::abs(area) > 1e-4F * cell.squaredNorm())) return;  // edge-on: it covers no pixel
-    Mat2f adjugate;
-    adjugate << cell(1, 1), -cell(0, 1), -cell(1, 0), cell(0, 0);
-    to_texel = adjugate / area;
-    const Mat2f widen = widening(cell);
-    const Mat2f wide = widen * cell;
-    const float wide_area = wide(0, 0) * wide(1, 1) - wide(0, 1) * wide(1, 0);
-    adjugate << wide(1, 1), -wide(0, 1), -wide(1, 0), wide(0, 0);
-    to_wide = adjugate / wide_area;
-    wide_back = 0.5F * triangle.steepness;
-    widened = !widen.isIdentity(1e-3F);
-    ring_back =
-        std::abs(depth_step.dot(wide.col(0))) + std::abs(depth_step.dot(wide.col(1))) + grid.pixel;
-    if (!to_texel.allFinite() || !to_wide.allFinite() || !std::isfinite(ring_back)) return;
-    reach = (ring * (wide.col(0).cwiseAbs() + wide.col(1).cwiseAbs())).cwiseMin(largest_splat);
-  }
-};
-
-/// The splats that a task used last.
-class SplatCache {
- public:
-  SplatCache(const Mesh& mesh, const StorageAtlas& storage, const ChartGrid& grid)
-      : mesh_(mesh), storage_(storage), grid_(grid), ids_(slots, no_triangle), splats_(slots) {}
-
-  const Splat& get(std::uint32_t triangle) {
-    const std::size_t slot = triangle % slots;
-    if (ids_[slot] != triangle) {
-      splats_[slot].load(mesh_, storage_, grid_, triangle);
-      ids_[slot] = triangle;
-    }
-    return splats_[slot];
-  }
-
- private:
-  static constexpr std::size_t slots = 512;
-  const Mesh& mesh_;
-  const StorageAtlas& storage_;
-  const ChartGrid& grid_;
-  std::vector<std::uint32_t> ids_;
-  std::vector<Splat> splats_;
-};
 
 /// Which eighth of a turn an offset lies in; `eighth ^ 6` is the opposite one.
 unsigned eighth(float dx, float dy) {
@@ -122,7 +43,12 @@ class TileCover {
  public:
   TileCover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
             const Image<PointOffset>& offsets)
-      : chart_(chart), offsets_(offsets), splats_(mesh, storage, chart.grid) {}
+      : mesh_(mesh),
+        storage_(storage),
+        chart_(chart),
+        offsets_(offsets),
+        splats_(mesh, storage, chart.grid),
+        triangles_(mesh, chart.grid) {}
 
   /// The largest reach of the points in a rectangle.
   int reach(const Rect& rect);
@@ -146,15 +72,19 @@ class TileCover {
   };
 
   void draw_point(int x, int y, const Splat& splat);
+  bool on_surface(int x, int y, int other_x, int other_y);
   bool load_steps(const Rect& wide, int y);
   float rise_over(const Rect& tile, int y) const;
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>((y - tile_.y0) * tile_side + x - tile_.x0);
   }
 
+  const Mesh& mesh_;
+  const StorageAtlas& storage_;
   const EditingChart& chart_;
   const Image<PointOffset>& offsets_;
   SplatCache splats_;
+  TriangleCache<ChartTriangle> triangles_;
   std::array<StepRow, 3> steps_;  // of a row and those beside it
   Rect tile_;
   std::array<float, tile_side * tile_side> front_;         // depth of what the splats show
@@ -166,22 +96,58 @@ int TileCover::reach(const Rect& rect) {
   float most = 0.0F;
   for (int y = rect.y0; y < rect.y1; ++y) {
     const std::uint32_t* ids = chart_.ids.triangle.row(y);
+    const PointOffset* offsets = offsets_.row(y);
     std::uint32_t last = no_triangle;
     for (int x = rect.x0; x < rect.x1; ++x) {
-      if (ids[x] == last || ids[x] == no_triangle) continue;
+      if (ids[x] == no_triangle || (ids[x] == last && !offsets[x].at_border)) continue;
       last = ids[x];
-      most = std::max(most, splats_.get(last).reach.maxCoeff());
+      const float wide = offsets[x].at_border ? border_ring : ring;
+      most = std::max(most, wide * splats_.get(last).reach.maxCoeff());
     }
   }
   return floor_to_int(most + 0.5F);  // points lie up to half a pixel off their pixels' centres
 }
 
+/// Does a triangle show at a pixel's centre, if nothing hides it?
+bool holds(const ChartTriangle& triangle, float x, float y) {
+  const Vec3f& e = triangle.points.col(1);
+  const Vec3f& f = triangle.points.col(2);
+  const float dx = x - triangle.points(0, 0);
+  const float dy = y - triangle.points(1, 0);
+  const float area = e.x() * f.y() - e.y() * f.x();
+  const float b1 = (dx * f.y() - dy * f.x()) / area;
+  const float b2 = (e.x() * dy - e.y() * dx) / area;
+  constexpr float least = -1e-4F;
+  return b1 >= least && b2 >= least && b1 + b2 <= 1.0F - least;
+}
+
+/// Does one of the triangles around the texel of a pixel's point show at another pixel?
+bool TileCover::on_surface(int x, int y, int other_x, int other_y) {
+  const TexelMap& map = storage_.sets[mesh_.texture_sets[chart_.ids.triangle(x, y)]].texels;
+  const TexelPlace at = texel_place(chart_.texel(x, y), map.width());
+  const Rect around = intersect({at.x - 1, at.y - 1, at.x + 2, at.y + 2}, map.owner().rect());
+  std::uint32_t last = no_triangle;
+  for (int j = around.y0; j < around.y1; ++j) {
+    for (int i = around.x0; i < around.x1; ++i) {
+      const std::uint32_t owner = map.owner()(i, j);
+      if (owner == last || owner == no_triangle) continue;
+      last = owner;
+      if (holds(triangles_.get(owner), static_cast<float>(other_x), static_cast<float>(other_y))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 void TileCover::draw_point(int x, int y, const Splat& splat) {
   const float right = PointOffset::unit * offsets_(x, y).x;  // of the splat's middle
   const float down = PointOffset::unit * offsets_(x, y).y;
-  Rect box{x - floor_to_int(splat.reach.x() - right), y - floor_to_int(splat.reach.y() - down),
-           x + floor_to_int(splat.reach.x() + right) + 1,
-           y + floor_to_int(splat.reach.y() + down) + 1};
+  const bool at_border = offsets_(x, y).at_border;
+  const float widest = at_border ? border_ring : ring;
+  const Vec2f reach = widest * splat.reach;
+  Rect box{x - floor_to_int(reach.x() - right), y - floor_to_int(reach.y() - down),
+           x + floor_to_int(reach.x() + right) + 1, y + floor_to_int(reach.y() + down) + 1};
   box = intersect(box, tile_);
   const float depth = chart_.ids.depth(x, y);
   const Mat2f& wide = splat.to_wide;
@@ -197,11 +163,14 @@ void TileCover::draw_point(int x, int y, const Splat& splat) {
       const float ox = dx - right;
       const float from_middle =
           std::max(std::abs(wide(0, 0) * ox + wide_x), std::abs(wide(1, 0) * ox + wide_y));
-      if (from_middle > ring) continue;
+      if (from_middle > widest) continue;
       float z = row_depth + dx * splat.depth_step.x();
       if (from_middle > inner_cell) {
-        z -= splat.ring_back;
-        sides_[k] = static_cast<std::uint8_t>(sides_[k] | 1U << eighth(ox, oy));
+        z -= widest * splat.ring_back;
+        if (at_border && !inner_[k]) inner_[k] = on_surface(x, y, i, j);
+        if (from_middle <= ring) {
+          sides_[k] = static_cast<std::uint8_t>(sides_[k] | 1U << eighth(ox, oy));
+        }
       } else {
         inner_[k] = true;
         if (splat.widened && outside_cell(splat, ox, oy)) z -= splat.wide_back;

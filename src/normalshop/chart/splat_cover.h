@@ -8,10 +8,11 @@
 /// Big splats of a chart of points, private to floor 4.
 namespace normalshop {
 
-/// Where in its pixel a point lies.
+/// Where in its pixel a point lies, and in its chart of the atlas.
 struct PointOffset {
   std::int8_t x;
   std::int8_t y;
+  bool at_border;  ///< its texel has a neighbour that no triangle owns
   /// Parts of a pixel.
   static constexpr float unit = 1.0F / 254.0F;
 };
@@ -23,7 +24,9 @@ struct PointOffset {
 /// The middle of a splat, a little more than the texel's own cell, hides what lies more than a
 /// pixel behind it; the ring around it, up to twice the cell, what lies a texel's depth further
 /// behind. A pixel that only rings cover is a hole where they come from opposite sides, as beside a
-/// seam: past a silhouette they come from one. Cracks of a single pixel are closed.
+/// seam: past a silhouette they come from one. At a border in the atlas, where the surface goes on
+/// past the last texel's cell, the ring is twice as wide, and what lies in one of the triangles
+/// there is surface. Cracks of a single pixel are closed.
 Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
                    const Image<PointOffset>& offsets);
 
