@@ -255,22 +255,44 @@ float TileCover::rise_over(const Rect& tile, int y) const {
   return most;
 }
 
-/// Single pixels between surface on opposite sides: where texels are crowded in one direction and
-/// far apart in the other, splats of those that lost their pixels are missing.
-void close_cracks(Image<Shown>& shown) {
+/// Finds cracks of a single pixel, where texels are crowded in one direction and far apart in the
+/// other and splats of those that lost their pixels are missing: pixels that show nothing, or a
+/// point far behind, between surface on opposite sides.
+class Cracks {
+ public:
+  Cracks(const EditingChart& chart, const Image<Shown>& shown) : chart_(chart), shown_(shown) {}
+
+  bool at(int x, int y) const {
+    if (shown_(x, y) == Shown::Hole) return false;
+    return between(x, y, 1, 0) || between(x, y, 0, 1);
+  }
+
+ private:
+  bool between(int x, int y, int dx, int dy) const {
+    const Rect all = shown_.rect();
+    if (!all.contains(x - dx, y - dy) || !all.contains(x + dx, y + dy)) return false;
+    const Shown before = shown_(x - dx, y - dy);
+    const Shown after = shown_(x + dx, y + dy);
+    if (shown_(x, y) == Shown::Nothing) return before != Shown::Nothing && after != Shown::Nothing;
+    if (before != Shown::Point || after != Shown::Point) return false;
+    constexpr float far_behind = 4.0F;  // pixels
+    const float depth = chart_.ids.depth(x, y) + far_behind * chart_.grid.pixel;
+    const float a = chart_.ids.depth(x - dx, y - dy);
+    const float b = chart_.ids.depth(x + dx, y + dy);
+    return depth + std::abs(a - b) < std::min(a, b);
+  }
+
+  const EditingChart& chart_;
+  const Image<Shown>& shown_;
+};
+
+void close_cracks(const EditingChart& chart, Image<Shown>& shown) {
   std::vector<std::vector<std::size_t>> found(static_cast<std::size_t>(shown.height()));
+  const Cracks cracks(chart, shown);
   parallel_rows(shown.height(), [&](int y) {
-    const auto surface = [&](int i, int j) {
-      return shown.rect().contains(i, j) && shown(i, j) != Shown::Nothing;
-    };
-    const auto between = [&](int x, int dx, int dy) {
-      return surface(x - dx, y - dy) && surface(x + dx, y + dy);
-    };
     for (int x = 0; x < shown.width(); ++x) {
-      if (shown(x, y) != Shown::Nothing) continue;
-      if (between(x, 1, 0) || between(x, 0, 1)) {
+      if (cracks.at(x, y))
         found[static_cast<std::size_t>(y)].push_back(static_cast<std::size_t>(x));
-      }
     }
   });
   for (int y = 0; y < shown.height(); ++y) {
@@ -339,7 +361,7 @@ Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingC
   const int around = (farthest + tile_side - 1) / tile_side;
   Image<Shown> shown(tiles.all.x1, tiles.all.y1);
   each_tile([&](TileCover& task, int i) { cover_tile(tiles, i, around, task, shown); });
-  close_cracks(shown);
+  close_cracks(chart, shown);
   return shown;
 }
 

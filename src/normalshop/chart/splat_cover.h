@@ -26,7 +26,8 @@ struct PointOffset {
 /// behind. A pixel that only rings cover is a hole where they come from opposite sides, as beside a
 /// seam: past a silhouette they come from one. At a border in the atlas, where the surface goes on
 /// past the last texel's cell, the ring is twice as wide, and what lies in one of the triangles
-/// there is surface. Cracks of a single pixel are closed.
+/// there is surface. Cracks of a single pixel are closed, also where
+/// something far behind shows in them.
 Image<Shown> cover(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
                    const Image<PointOffset>& offsets);
 
