@@ -7,6 +7,7 @@
 #include "model_flags.h"
 #include "verbs.h"
 
+#include "normalshop/core/options.h"
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/edit_report.h"
 #include "normalshop/io/export_maps.h"
@@ -24,6 +25,8 @@ struct EditFlags {
   std::filesystem::path output;
   std::string preset;
   std::string bits;
+  std::string transfer;
+  std::string update;
   bool json = false;
 
   ExportOptions export_options() const {
@@ -31,6 +34,12 @@ struct EditFlags {
     ExportPreset chosen{};
     if (!preset.empty() && from_name(preset, chosen)) out.preset = chosen;
     out.type = code_type(bits);
+    return out;
+  }
+  TransferOptions transfer_options() const {
+    TransferOptions out;
+    if (!transfer.empty()) from_name(transfer, out.transfer);
+    if (!update.empty()) from_name(update, out.update);
     return out;
   }
 };
@@ -71,6 +80,10 @@ void check_no_model_flags(const OpenOptions& options) {
 }
 
 ImageJob edit_image(const EditFlags& flags, const Recipe& recipe) {
+  if (!flags.transfer.empty() || !flags.update.empty()) {
+    throw WrongUse(flags.transfer.empty() ? "--update" : "--transfer",
+                   "is for models; a picture is its own chart");
+  }
   const OpenOptions options = flags.model.options();
   check_no_model_flags(options);
   OpenImageOptions open = flags.image.open();
@@ -103,8 +116,8 @@ void run_edit(const EditFlags& flags) {
     const ImageJob job = edit_image(flags, recipe);
     print_job(job, job.opened.notes, flags.json);
   } else {
-    const EditJob job =
-        run_edit_job(flags.model.options(), recipe, flags.output, flags.export_options());
+    const EditJob job = run_edit_job(flags.model.options(), recipe, flags.output,
+                                     flags.export_options(), flags.transfer_options());
     print_job(job, job.notes, flags.json);
   }
 }
@@ -125,6 +138,14 @@ void add_edit_verb(CommandLine& program) {
       .one_of({"gltf", "opengl", "directx", "object"});
   verb.takes("--bits", flags.bits, "Bits a channel of the written maps (the input's unless given)")
       .one_of({"8", "16", "32"});
+  verb.takes(
+          "--transfer", flags.transfer,
+          "How charts are made of a model's map: triangle (the default) or point, for comparison "
+          "(docs/transfers.md)")
+      .one_of({"triangle", "point"});
+  verb.takes("--update", flags.update,
+             "How edited charts get back: gather (the default), or for comparison point or area")
+      .one_of({"gather", "point", "area"});
   verb.flag("--json", flags.json, "Print the report as JSON");
 }
 

@@ -358,6 +358,14 @@ TEST_F(Pictures, WrongUseIsOneSentence) {
   bad({"edit", path("color.png"), "--normals", normal, "--size", "64", "--recipe",
        path("recipe.json"), "-o", path("out")},
       2, {"--size", "models"});
+  for (const std::string flag : {"--transfer", "--update"}) {
+    bad({"edit", path("color.png"), "--normals", normal, flag, "point", "--recipe",
+         path("recipe.json"), "-o", path("out")},
+        2, {flag, "models", "its own chart"});
+    bad({"edit", path("color.png"), flag, "splat", "--recipe", path("recipe.json"), "-o",
+         path("out")},
+        2, {flag, "splat"});
+  }
   bad({"segment", normal}, 1, {"nothing would be written"});
 }
 

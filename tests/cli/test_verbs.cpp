@@ -101,6 +101,33 @@ TEST_F(Verbs, InfoIsForReading) {
   EXPECT_EQ(text.find('['), std::string::npos) << text;
 }
 
+TEST_F(Verbs, EditByEveryTransferAndUpdate) {
+  std::vector<Arguments> runs;
+  for (const std::string transfer : {"triangle", "point"}) {
+    for (const std::string update : {"gather", "point", "area"}) {
+      runs.push_back(edit("map.png", "recipe.json", transfer + update,
+                          {"--transfer", transfer, "--update", update, "--json"}));
+    }
+  }
+  runs.push_back(edit("map.png", "recipe.json", "plain", {"--json"}));
+  const std::vector<ProgramRun> results = run_all(runs);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Value report = json_of(results[i]);
+    EXPECT_EQ(*report.find("transfer")->text(), runs[i][9]);
+    EXPECT_EQ(*report.find("update")->text(), runs[i][11]);
+    EXPECT_GT(number(report, "texels_changed"), 50.0);
+    EXPECT_EQ(number(report, "texels_lost"), 0.0) << "pixels as large as texels";
+    // Values instead of changes: what the stroke's box holds is written, too.
+    const Value difference =
+        compare("plain/skin_normal.png", runs[i][9] + runs[i][11] + "/skin_normal.png");
+    EXPECT_LT(number(difference, "mean"), 0.5) << command_line(runs[i]);
+  }
+  expect_same_codes(folder_ / "plain/skin_normal.png", folder_ / "trianglegather/skin_normal.png");
+  const Value report = json_of(results[6]);
+  EXPECT_EQ(*report.find("transfer")->text(), "triangle");
+  EXPECT_EQ(*report.find("update")->text(), "gather");
+}
+
 TEST_F(Verbs, AreThoseOfTheProgram) {
   EXPECT_EQ(run_program({"--version"}).out, call_program({"--version"}).out);
   const ProgramRun wrong = run_program({"paint"});

@@ -1,6 +1,7 @@
 #include "document/edit_fixture.h"
 #include "support/same_codes.h"
 
+#include "normalshop/core/options.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop::test {
@@ -327,6 +328,34 @@ TEST(ApplyEdit, OverlappingViewsAddUpAndTheLogGrows) {
     for (int x = 0; x < 256; ++x) ASSERT_EQ(map_of(d).normal(x, y), map_of(again).normal(x, y));
   }
   expect_unit_normals(map_of(d));
+}
+
+TEST(ApplyEdit, EveryTransferAndUpdateMakesTheSameEdit) {
+  const std::vector<std::string> edits{
+      pen_line + R"(, "view": "front")",
+      pen_line + R"(, "view": "front", "mode": "base", "details": "ignore")",
+      R"("operator": "smooth", "view": "front", "options": {"sigma": 0.02})"};
+  for (const std::string& text : edits) {
+    Document usual = hemisphere_document(256);
+    usual.apply(edit(text));
+    for (const Transfer transfer : {Transfer::Triangle, Transfer::Point}) {
+      for (const Update update : {Update::Gather, Update::Point, Update::Area}) {
+        Document d = hemisphere_document(256);
+        const EditReport report = d.apply(edit(text), {transfer, update});
+        EXPECT_EQ(report.transfer.update, update);
+        EXPECT_LT(20 * report.lost, report.pushed.changed + 1);
+        double sum = 0.0;
+        for (int y = 0; y < 256; ++y) {
+          for (int x = 0; x < 256; ++x) {
+            sum += static_cast<double>(
+                degrees_between(map_of(usual).normal(x, y), map_of(d).normal(x, y)));
+          }
+        }
+        EXPECT_LT(sum / (256.0 * 256.0), 0.1) << text << name_of(transfer) << name_of(update);
+        EXPECT_GT(report.pushed.changed, 500U);
+      }
+    }
+  }
 }
 
 }  // namespace

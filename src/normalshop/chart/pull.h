@@ -15,6 +15,9 @@ struct EditingChart {
   Image<Vec3f> normal;       ///< N^f: the stored normals, details included; empty unless asked for
   ColorImage albedo;         ///< linear RGB; empty unless asked for
   MaskImage weight;          ///< effective chart: see effective.h; empty until asked for
+  /// Which texel (y * width + x in its triangle's texture set) a pixel shows; empty until asked
+  /// for: pull_points(), find_texels().
+  Image<std::uint32_t> texel;
 };
 
 struct PullOptions {

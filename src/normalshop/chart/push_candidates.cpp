@@ -12,8 +12,6 @@ namespace {
 
 constexpr int tile_side = NormalMap::tile_size;
 
-int tiles_along(int texels) { return (texels + tile_side - 1) / tile_side; }
-
 }  // namespace
 
 PushCandidates::PushCandidates(const Mesh& mesh, const EditReach& reach, std::uint32_t texture_set,
@@ -22,9 +20,9 @@ PushCandidates::PushCandidates(const Mesh& mesh, const EditReach& reach, std::ui
       texture_set_(texture_set),
       width_(width),
       height_(height),
-      tile_columns_(tiles_along(width)),
+      tile_columns_(NormalMap::tiles_along(width)),
       triangles_(mesh.triangle_count(), 0),
-      tiles_(static_cast<std::size_t>(tile_columns_ * tiles_along(height)), 0) {
+      tiles_(static_cast<std::size_t>(tile_columns_ * NormalMap::tiles_along(height)), 0) {
   parallel_for(mesh.triangle_count(), 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto triangle = static_cast<std::uint32_t>(i);

@@ -17,6 +17,10 @@ class PushCandidates {
                  int height);
 
   bool contains(std::uint32_t triangle) const { return triangles_[triangle] != 0; }
+  /// The same as a function.
+  auto wanted() const {
+    return [marks = triangles_.data()](std::uint32_t triangle) { return marks[triangle] != 0; };
+  }
   /// In texels.
   std::vector<Rect> tiles() const;
 

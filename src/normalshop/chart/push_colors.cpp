@@ -1,7 +1,7 @@
 #include "normalshop/chart/push_colors.h"
 
+#include <atomic>
 #include <cassert>
-#include <mutex>
 
 #include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/edit_reach.h"
@@ -70,18 +70,18 @@ class SetColorPush {
     keep_strongest(shared_);
     std::vector<TexelWrite> gutter = gutter_writes();
     keep_strongest(gutter);
-    ColorPushResult result;
-    std::mutex mutex;
+    std::atomic<std::size_t> visited = 0;
+    std::atomic<std::size_t> changed = 0;
     parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
       ColorPushResult local;
-      TexelRows rows(mesh_, sampler_.reach().grid(), texels_, candidates_);
+      TexelRows rows(mesh_, sampler_.reach().grid(), texels_, candidates_.wanted());
       for (std::size_t i = begin; i < end; ++i) {
-        rows.visit(tiles[i], [&](const TexelRows::Row& row) { edit_row(row, local); });
+        rows.visit(tiles[i], [&](TexelLanes& row) { edit_row(row, local); });
       }
-      const std::lock_guard lock(mutex);
-      result.visited += local.visited;
-      result.changed += local.changed;
+      visited += local.visited;
+      changed += local.changed;
     });
+    ColorPushResult result{visited, changed};
     result.changed += write(shared_) + write(gutter);
     return result;
   }
@@ -89,14 +89,14 @@ class SetColorPush {
  private:
   using Cache = TriangleCache<PushTriangle>;
 
-  void edit_row(const TexelRows::Row& row, ColorPushResult& result) {
+  void edit_row(TexelLanes& row, ColorPushResult& result) {
     result.visited += static_cast<std::size_t>(row.batch.count);
     if (!sampler_.read(row.batch)) return;
     for (int i = 0; i < row.batch.count; ++i) {
-      if (!row.batch.acts(i)) continue;
-      const int x = row.columns[static_cast<std::size_t>(i)];
-      if (holds_texel(shared_, texel_index(x, row.y, texels_.width()))) continue;
-      if (albedo_.add(x, row.y, change_of(row.batch, i))) ++result.changed;
+      const std::uint32_t index = row.texels[static_cast<std::size_t>(i)];
+      if (!row.batch.acts(i) || holds_texel(shared_, index)) continue;
+      const auto [x, y] = texel_place(index, texels_.width());
+      if (albedo_.add(x, y, change_of(row.batch, i))) ++result.changed;
     }
   }
 

@@ -9,7 +9,6 @@
 
 #include "normalshop/chart/edit_sampler.h"
 #include "normalshop/chart/shared_texels.h"
-#include "normalshop/chart/texel_rows.h"
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 
@@ -47,7 +46,7 @@ class SetPush {
  private:
   using Cache = TriangleCache<PushTriangle>;
   void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
-  PushTally edit_row(const TexelRows::Row& row);
+  PushTally edit_row(TexelLanes& row);
   std::vector<TexelWrite> gutter_writes() const;
   std::vector<TexelWrite> shared_writes() const;
   static TexelWrite write_of(const TexelBatch& batch, int i, std::uint32_t texel);
@@ -93,27 +92,27 @@ void SetPush<Target>::fill_frames(const PerLane<std::uint32_t>& triangles,
 }
 
 template <class Target>
-PushTally SetPush<Target>::edit_row(const TexelRows::Row& row) {
+PushTally SetPush<Target>::edit_row(TexelLanes& row) {
   TexelBatch& batch = row.batch;
   PushTally tally;
   tally.visited = static_cast<std::size_t>(batch.count);
   if (!sampler_.read(batch)) return tally;
-  fill_frames(row.owners, batch);
-  const int x0 = row.columns[0];
-  const int x1 = row.columns[static_cast<std::size_t>(batch.count - 1)] + 1;
+  fill_frames(row.triangles, batch);
+  const std::uint32_t first = row.texels[0];
+  const auto [x0, y] = texel(first);
+  const auto last = static_cast<std::size_t>(batch.count - 1);
   PerLane<Vec3f> stored;
-  set_.normals.read_vectors(x0, x1 - x0, row.y, stored.data());
+  set_.normals.read_vectors(x0, static_cast<int>(row.texels[last] - first) + 1, y, stored.data());
   for (int i = 0; i < batch.count; ++i) {
-    const int column = row.columns[static_cast<std::size_t>(i)];
-    batch.stored.set(i, stored[static_cast<std::size_t>(column - x0)]);
+    batch.stored.set(i, stored[row.texels[static_cast<std::size_t>(i)] - first]);
   }
   apply(sampler_.mode(), batch);
   for (int i = 0; i < batch.count; ++i) {
     if (!batch.acts(i)) continue;
     const auto k = static_cast<std::size_t>(i);
-    const int x = row.columns[k];
-    const std::uint32_t index = texel_index(x, row.y, set_.normals.width());
-    if (!holds_texel(shared_, index)) put(x, row.y, write_of(batch, i, index), tally);
+    const std::uint32_t index = row.texels[k];
+    if (holds_texel(shared_, index)) continue;
+    put(x0 + static_cast<int>(index - first), y, write_of(batch, i, index), tally);
   }
   return tally;
 }
@@ -263,9 +262,9 @@ PushTally SetPush<Target>::run() {
   std::mutex mutex;
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     PushTally local;
-    TexelRows rows(mesh_, sampler_.grid(), set_.texels, candidates_);
+    TexelRows rows(mesh_, sampler_.grid(), set_.texels, candidates_.wanted());
     for (std::size_t i = begin; i < end; ++i) {
-      rows.visit(tiles[i], [&](const TexelRows::Row& row) { local.add(edit_row(row)); });
+      rows.visit(tiles[i], [&](TexelLanes& row) { local.add(edit_row(row)); });
     }
     const std::lock_guard lock(mutex);
     tally.add(local);

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "normalshop/chart/texel_rows.h"
+#include "normalshop/chart/push_candidates.h"
+#include "normalshop/chart/texel_walk.h"
 
 /// Which of several triangles decides what a texel gets, private to floor 4.
 namespace normalshop {

@@ -9,8 +9,6 @@ namespace {
 
 constexpr int side = NormalMap::tile_size;
 
-int tiles_along(int texels) { return (texels + side - 1) / side; }
-
 std::size_t place_in_tile(int x, int y) {
   return static_cast<std::size_t>((y % side) * side + x % side);
 }
@@ -27,8 +25,8 @@ struct SurfaceBlend::Target {
   Tiles& tiles;
 
   void put(int x, int y, const TexelWrite& write) {
-    auto& tile =
-        tiles[static_cast<std::size_t>(y / side * tiles_along(normals.width()) + x / side)];
+    auto& tile = tiles[static_cast<std::size_t>(y / side * NormalMap::tiles_along(normals.width()) +
+                                                x / side)];
     if (!tile) tile = std::make_unique<Tile>();
     const std::size_t i = place_in_tile(x, y);
     const float factor = facing_share(write.facing);
@@ -41,8 +39,8 @@ struct SurfaceBlend::Target {
 
 SurfaceBlend::SurfaceBlend(const StorageAtlas& storage) {
   for (const StorageSet& set : storage.sets) {
-    sets_.emplace_back(static_cast<std::size_t>(tiles_along(set.normals.width())) *
-                       static_cast<std::size_t>(tiles_along(set.normals.height())));
+    sets_.emplace_back(static_cast<std::size_t>(NormalMap::tiles_along(set.normals.width())) *
+                       static_cast<std::size_t>(NormalMap::tiles_along(set.normals.height())));
   }
 }
 
@@ -61,7 +59,7 @@ PushResult SurfaceBlend::write(StorageAtlas& storage) const {
   std::mutex mutex;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
     NormalMap& map = storage.sets[s].normals;
-    const int columns = tiles_along(map.width());
+    const int columns = NormalMap::tiles_along(map.width());
     parallel_for(sets_[s].size(), 16, [&](std::size_t begin, std::size_t end) {
       PushTally local;
       for (std::size_t t = begin; t < end; ++t) {

@@ -28,8 +28,8 @@ NormalMap::NormalMap(RawImage codes, const NormalConvention& convention)
         std::to_string(codes_.channels()));
   }
   range_ = code_range(codes_.type(), convention_);
-  tile_columns_ = (codes_.width() + tile_size - 1) / tile_size;
-  const int tile_rows = (codes_.height() + tile_size - 1) / tile_size;
+  tile_columns_ = tiles_along(codes_.width());
+  const int tile_rows = tiles_along(codes_.height());
   tiles_.resize(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows));
 }
 

@@ -47,6 +47,7 @@ CodeRange code_range(CodeType type, const NormalConvention& convention);
 class NormalMap {
  public:
   static constexpr int tile_size = 64;
+  static constexpr int tiles_along(int texels) { return (texels + tile_size - 1) / tile_size; }
 
   NormalMap() = default;
   /// Codes with 2 to 4 channels (3 to 4 unless two_channel). Throws InvalidInput otherwise.

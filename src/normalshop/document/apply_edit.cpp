@@ -5,6 +5,7 @@
 #include "normalshop/chart/cover.h"
 #include "normalshop/chart/push_colors.h"
 #include "normalshop/chart/surface_blend.h"
+#include "normalshop/chart/update_storage.h"
 #include "normalshop/core/error.h"
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/prepare_edit.h"
@@ -45,19 +46,31 @@ PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams, float
   return pushed;
 }
 
+/// The normals, by whatever way the transfer says.
+void push_normals(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+                  PreparedEdit& prepared, StorageAtlas& storage) {
+  const EditingChart& chart = prepared.chart;
+  EditReport& report = prepared.report;
+  const ChartEdit change = prepared.change(edit.mode);
+  if (report.transfer.update == Update::Gather) {
+    const std::vector<SeamEdge> near = seams_near(mesh, seams, chart.grid, change.region);
+    report.pushed =
+        push_and_fit(mesh, near, 1.0F, storage, [&] { return push(mesh, chart, change, storage); });
+    return;
+  }
+  report.pushed = update_storage(mesh, chart, change, report.transfer.update, storage);
+  report.lost = lost_texels(mesh, chart, change.region, storage);
+}
+
 void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
                    PreparedEdit& prepared, StorageAtlas& storage) {
   Stopwatch watch;
   if (edit.strength > 0.0F) {
-    const EditingChart& chart = prepared.chart;
-    const std::vector<SeamEdge> near = seams_near(mesh, seams, chart.grid, prepared.result.region);
-    prepared.report.pushed = push_and_fit(mesh, near, 1.0F, storage, [&] {
-      return push(mesh, chart, prepared.change(edit.mode), storage);
-    });
+    push_normals(edit, mesh, seams, prepared, storage);
     const ColorResult& colors = prepared.colors;
     if (!colors.change.empty()) {
       prepared.report.colors_changed =
-          push_colors(mesh, chart, {colors.change, colors.region}, storage).changed;
+          push_colors(mesh, prepared.chart, {colors.change, colors.region}, storage).changed;
     }
   }
   prepared.report.times.push = watch.lap();
@@ -74,6 +87,7 @@ void add(const EditReport& other, EditReport& report) {
     report.pixel = other.pixel;
   }
   report.views += other.views;
+  report.lost += other.lost;
   report.coarser_than_texels = report.coarser_than_texels || other.coarser_than_texels;
   report.pushed.visited += other.pushed.visited;
   report.pushed.changed += other.pushed.changed;
@@ -88,7 +102,12 @@ void add(const EditReport& other, EditReport& report) {
 /// All views see what was there before any of them; their mean is stored at once.
 EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const Mesh& mesh,
                             std::span<const SeamEdge> seams, SurfaceCover& cover,
-                            StorageAtlas& storage) {
+                            StorageAtlas& storage, const TransferOptions& transfer) {
+  if (!(transfer == TransferOptions{})) {
+    throw InvalidInput(edit.path +
+                       ".view must be one view where the transfer is by points or the update "
+                       "by point or area: the whole surface is pulled by triangles and gathered");
+  }
   Stopwatch watch;
   const CoverOptions options{surface.views,
                              effective_options(edit.effective, bounds(mesh).diagonal())};
@@ -115,17 +134,17 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
 }  // namespace
 
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      SurfaceCover& cover, StorageAtlas& storage) {
+                      SurfaceCover& cover, StorageAtlas& storage, const TransferOptions& transfer) {
   if (const auto* surface = std::get_if<SurfaceView>(&edit.view)) {
-    return apply_to_surface(edit, *surface, mesh, seams, cover, storage);
+    return apply_to_surface(edit, *surface, mesh, seams, cover, storage, transfer);
   }
   const View view = resolve(edit.view, mesh);
-  PreparedEdit side = prepare_edit(edit, view, mesh, storage);
+  PreparedEdit side = prepare_edit(edit, view, mesh, storage, transfer);
   std::optional<PreparedEdit> other;  // before any push: both see what was there, and throw in time
   if (edit.mirror) {
     const View image = mirrored(view, static_cast<int>(edit.mirror->axis), edit.mirror->at);
     try {
-      other = prepare_edit(edit, image, mesh, storage);
+      other = prepare_edit(edit, image, mesh, storage, transfer);
     } catch (const InvalidInput& error) {
       throw InvalidInput(edit.path + ".mirror: on the other side, " + error.what());
     }

@@ -10,6 +10,6 @@ namespace normalshop {
 /// `seams` are those of the whole mesh, `cover` is of no other mesh. Throws before anything
 /// changes.
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                      SurfaceCover& cover, StorageAtlas& storage);
+                      SurfaceCover& cover, StorageAtlas& storage, const TransferOptions& transfer);
 
 }  // namespace normalshop

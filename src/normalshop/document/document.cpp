@@ -29,8 +29,8 @@ Document::Document(Mesh mesh, std::vector<Maps> maps, const Progress& progress)
   }
 }
 
-EditReport Document::apply(const Edit& edit) {
-  const EditReport report = apply_edit(edit, mesh_, seams_, cover_, storage_);
+EditReport Document::apply(const Edit& edit, const TransferOptions& transfer) {
+  const EditReport report = apply_edit(edit, mesh_, seams_, cover_, storage_, transfer);
   log_.push_back(edit);
   return report;
 }

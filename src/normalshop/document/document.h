@@ -5,6 +5,7 @@
 #include "normalshop/chart/cover.h"
 #include "normalshop/chart/push.h"
 #include "normalshop/chart/storage.h"
+#include "normalshop/chart/transfer.h"
 #include "normalshop/core/progress.h"
 #include "normalshop/document/edit.h"
 #include "normalshop/surface/seams.h"
@@ -30,6 +31,9 @@ struct EditReport {
   PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
   std::size_t colors_changed = 0;  ///< texels (of a picture: pixels) of the colours, likewise
   EditTimes times;
+  TransferOptions transfer = {};
+  /// Texels that the edit reached and the update did not write: 0 with Update::Gather.
+  std::size_t lost = 0;
 };
 
 /// A model, its storage atlas and the edits made to it. All changes go through apply(): the command
@@ -54,7 +58,7 @@ class Document {
 
   /// Applies an edit and adds it to the log. Throws InvalidInput when a stroke does not meet the
   /// surface that its view shows; the document is unchanged then.
-  EditReport apply(const Edit& edit);
+  EditReport apply(const Edit& edit, const TransferOptions& transfer = {});
 
  private:
   Mesh mesh_;

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "normalshop/chart/extend.h"
+#include "normalshop/chart/point_pull.h"
 #include "normalshop/chart/resolution.h"
+#include "normalshop/chart/update_storage.h"
 #include "normalshop/core/error.h"
 #include "normalshop/core/for_pixels.h"
 #include "normalshop/core/parallel.h"
@@ -95,17 +97,24 @@ bool has_colors(const StorageAtlas& storage) {
                      [](const StorageSet& set) { return !set.albedo.empty(); });
 }
 
-/// Rasterises, pulls what the operator needs and weighs.
+/// Pulls what the operator and the update need, and weighs.
 EditingChart build_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
-                         const StorageAtlas& storage, const ChartGrid& grid, float model_size) {
+                         const StorageAtlas& storage, const ChartGrid& grid, float model_size,
+                         const TransferOptions& transfer) {
   EditingChart chart;
   chart.grid = grid;
-  cover.rasterize(mesh, chart.grid, chart.ids);
   PullOptions pulled;
   const EditOperator& operation = *edit.operation;
-  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep);
+  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep) ||
+                   transfer.update != Update::Gather;
   pulled.albedo = operation.reads_colors() && has_colors(storage);
-  pull_attributes(mesh, storage, chart, pulled);
+  if (transfer.transfer == Transfer::Point) {
+    pull_points(mesh, storage, grid, pulled, chart);
+  } else {
+    cover.rasterize(mesh, chart.grid, chart.ids);
+    pull_attributes(mesh, storage, chart, pulled);
+    if (transfer.update != Update::Gather) find_texels(mesh, storage, chart);
+  }
   compute_weight(chart, effective_options(edit.effective, model_size));
   return chart;
 }
@@ -137,7 +146,8 @@ void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   check_on_surface(edit, input.strokes, chart, input.region, place.model);
   Source source;
   if (edit.operation->reads() || edit.operation->picks()) source = make_source(edit, chart);
-  chart.normal = {};
+  const bool gather = prepared.report.transfer.update == Update::Gather;
+  if (gather) chart.normal = {};
   if (edit.operation->reads()) input.source = source.slopes;
   if (edit.operation->picks()) {
     input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
@@ -157,7 +167,7 @@ void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   if (edit.operation->moves_colors() && !chart.albedo.empty()) {
     prepared.colors = run_colors(edit, input, chart.albedo);
   }
-  chart.base_normal = {};
+  if (gather) chart.base_normal = {};
   chart.albedo = {};
 }
 
@@ -173,7 +183,7 @@ EffectiveOptions effective_options(const EffectiveAngles& angles, float model_si
 }
 
 PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& mesh,
-                          const StorageAtlas& storage) {
+                          const StorageAtlas& storage, const TransferOptions& transfer) {
   Stopwatch watch;
   const Bounds box = bounds(mesh);
   const View& view = cover.view;
@@ -184,8 +194,9 @@ PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& 
   const float texel =
       texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high, counted);
   PreparedEdit prepared;
+  prepared.report.transfer = transfer;
   prepared.chart = build_chart(edit, cover, mesh, storage, choose_grid(edit, view, place, texel),
-                               box.diagonal());
+                               box.diagonal(), transfer);
   EditReport& report = prepared.report;
   const ChartGrid& grid = prepared.chart.grid;
   report.views = 1;
@@ -200,9 +211,9 @@ PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& 
 }
 
 PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
-                          const StorageAtlas& storage) {
+                          const StorageAtlas& storage, const TransferOptions& transfer) {
   const Extent all = view_extent(view);
-  return prepare_edit(edit, CoverView{view, all.low, all.high, nullptr}, mesh, storage);
+  return prepare_edit(edit, CoverView{view, all.low, all.high, nullptr}, mesh, storage, transfer);
 }
 
 }  // namespace normalshop

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "normalshop/core/options.h"
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/io/atomic_file.h"
 
@@ -53,7 +54,7 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   const std::vector<float> before = seam_angles(document.mesh(), samples, maps);
   clock.start("edits");
   for (const Edit& edit : recipe.edits) {
-    job.edits.push_back(document.apply(edit));
+    job.edits.push_back(document.apply(edit, job.transfer));
     if (job.edits.back().coarser_than_texels) {
       job.notes.push_back(edit.path +
                           ": covers more texels than an editing chart has pixels, so it "
@@ -117,7 +118,8 @@ Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports
 }
 
 EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
-                     const std::filesystem::path& folder, const ExportOptions& options) {
+                     const std::filesystem::path& folder, const ExportOptions& options,
+                     const TransferOptions& transfer) {
   // First, so that a folder that cannot be written costs no time.
   check_output_folder(open.model, folder);
   StagedFolder staged(folder);
@@ -128,7 +130,7 @@ EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
     clock.start(stage);
     return true;
   };
-  EditJob job{open_document(open, progress), {}, {}, {}, {}, {}, {}, {}};
+  EditJob job{open_document(open, progress), {}, transfer, {}, {}, {}, {}, {}, {}};
   clock.stop();
   job.notes = job.opened.notes;
   apply_all(job, recipe, clock);
@@ -154,8 +156,12 @@ Value report_value(const EditJob& job) {
   Value::Object times;
   for (const auto& [stage, seconds] : job.times) times.emplace_back(stage, seconds);
   std::size_t changed = 0;
+  std::size_t lost = 0;
   float largest = 0.0F;
-  for (const EditReport& e : job.edits) largest = std::max(largest, e.pushed.largest_change);
+  for (const EditReport& e : job.edits) {
+    largest = std::max(largest, e.pushed.largest_change);
+    lost += e.lost;
+  }
   for (const StorageSet& set : job.opened.document.storage().sets) {
     changed += set.normals.edited_count();
   }
@@ -163,6 +169,9 @@ Value report_value(const EditJob& job) {
       {"model", job.opened.model.path.filename().string()},
       {"texels_changed", changed},
       {"largest_change_degrees", largest},
+      {"transfer", name_of(job.transfer.transfer)},
+      {"update", name_of(job.transfer.update)},
+      {"texels_lost", lost},
       {"seams", Value::Object{{"samples", job.seams_growth.count},
                               {"before_degrees", mismatch_value(job.seams_before)},
                               {"after_degrees", mismatch_value(job.seams_after)},

@@ -16,6 +16,7 @@ namespace normalshop {
 struct EditJob {
   OpenedDocument opened;
   std::vector<EditReport> edits;
+  TransferOptions transfer;
   /// At the seams that the edits crossed: mismatch before, after, and its growth, in degrees.
   SeamMismatch seams_before;
   SeamMismatch seams_after;
@@ -28,7 +29,8 @@ struct EditJob {
 /// Opens, applies the recipe, writes maps, model and report.json into `folder`. Nothing is written
 /// unless every edit succeeds. Throws IoError or InvalidInput.
 EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
-                     const std::filesystem::path& folder, const ExportOptions& options);
+                     const std::filesystem::path& folder, const ExportOptions& options,
+                     const TransferOptions& transfer = {});
 
 /// What each edit of a log did, for reports.
 Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports);
