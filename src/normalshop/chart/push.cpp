@@ -8,6 +8,7 @@ namespace {
 
 /// Stores every texel at once.
 struct DirectTarget {
+  static constexpr bool reads_facing = false;
   NormalMap& normals;
   void put(int x, int y, const TexelWrite& write) { normals.set_normal(x, y, write.value); }
 };

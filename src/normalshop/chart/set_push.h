@@ -28,8 +28,9 @@ struct PushTally {
   }
 };
 
-/// The push into one texture set. Target: put(x, y, write) takes what a texel gets; different
-/// threads put into different tiles of NormalMap::tile_size. It may store it in set.normals.
+/// The push into one texture set. Target: put(x, y, write) takes what a texel gets, with
+/// write.facing where reads_facing; different threads put into different tiles of
+/// NormalMap::tile_size. It may store it in set.normals.
 template <class Target>
 class SetPush {
  public:
@@ -171,8 +172,12 @@ void SetPush<Target>::edit_gutter(const PerLane<const GutterTexel*>& items, Cach
 template <class Target>
 TexelWrite SetPush<Target>::write_of(const TexelBatch& batch, int i, std::uint32_t texel) {
   const auto k = static_cast<std::size_t>(i);
-  const Vec3f base = batch.base.get(i);
-  return {texel, batch.weight[k], batch.result.get(i), batch.turn[k], base.z() / base.norm()};
+  TexelWrite write{texel, batch.weight[k], batch.result.get(i), batch.turn[k]};
+  if constexpr (Target::reads_facing) {
+    const Vec3f base = batch.base.get(i);
+    write.facing = base.z() / base.norm();
+  }
+  return write;
 }
 
 template <class Target>

@@ -21,6 +21,7 @@ Vec3f unit_or_zero(const Vec3f& v) {
 }  // namespace
 
 struct SurfaceBlend::Target {
+  static constexpr bool reads_facing = true;
   const NormalMap& normals;
   Tiles& tiles;
 
