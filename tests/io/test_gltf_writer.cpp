@@ -91,6 +91,35 @@ TEST(GltfWriter, NewColoursComeToTheMaterialsThatShowedThem) {
   EXPECT_EQ(out["textures"][first["index"].get<std::size_t>()]["sampler"], 0);
 }
 
+/// A colour map that the user gives is one in the normal map's UVs.
+TEST(GltfWriter, NewColoursHaveTheUvsThatTheyWereEditedIn) {
+  const TempFolder folder;
+  GltfBuilder gltf;
+  Json& primitive = gltf.square();
+  primitive["material"] = 0;
+  primitive["attributes"]["TEXCOORD_1"] = primitive["attributes"]["TEXCOORD_0"];
+  for (const char* name : {"n.png", "c.png"}) {
+    gltf.json["images"].push_back({{"uri", name}});
+    write_file(folder / name, std::string_view("x"));
+  }
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  Json material = textured("color", 1);
+  material["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
+  material["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
+  gltf.json["materials"] = Json::array({material});
+  write_file(folder / "in.gltf", gltf.text());
+  Model model = read_model(folder / "in.gltf");
+  EXPECT_TRUE(mentions(model.notes, "other UVs"));
+  model.texture_sets[0].albedo_materials = model.texture_sets[0].materials;
+  write_model(model, folder / "out.gltf", {{0, {"", false, "new.png"}}});
+  const Json out = Json::parse(read_file(folder / "out.gltf"));
+  const Json& info = out["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  EXPECT_FALSE(info.contains("texCoord"));
+  EXPECT_FALSE(info.contains("scale"));
+  const Json& texture = out["textures"][info["index"].get<std::size_t>()];
+  EXPECT_EQ(out["images"][texture["source"].get<std::size_t>()]["uri"], "new.png");
+}
+
 TEST(GltfWriter, NewColoursOfOlderMaterialsStayInTheirExtension) {
   const TempFolder folder;
   GltfBuilder gltf;

@@ -33,11 +33,10 @@ RawImage export_map(const OpenedDocument& opened, std::size_t set, const ExportO
 void check_output_folder(const std::filesystem::path& model, const std::filesystem::path& folder);
 
 /// Writes `<texture set>_normal.png` (.exr for 32 bits, .tif where the input was TIFF and the
-/// preset is not glTF's) for every texture set that had a map or was edited, `<texture
-/// set>_color.png`
-/// (.exr for 32 bits) where colours moved, and the model that uses them, into `staged`, whose
-/// commit() is the caller's. Returns the files, maps first, then the model's. Throws IoError or
-/// InvalidInput.
+/// preset is not glTF's) for every texture set that had a map or was edited,
+/// `<texture set>_color.png` (.exr for 32 bits) where colours moved, and the model that uses them,
+/// into `staged`, whose commit() is the caller's. Returns the files, maps first, then the model's.
+/// Throws IoError or InvalidInput.
 std::vector<std::filesystem::path> export_document(const OpenedDocument& opened,
                                                    const StagedFolder& staged,
                                                    const ExportOptions& options,

@@ -197,7 +197,9 @@ std::size_t MaterialTable::make(int material) {
     const auto index = static_cast<std::size_t>(known - keys_.begin());
     TextureSet& set = model_.texture_sets[index];
     set.materials.push_back(material);
-    if (set.albedo && albedo_keys_[index] == albedo_key) set.albedo_materials.push_back(material);
+    const bool same = albedo_keys_[index] == albedo_key;
+    if (set.albedo && same) set.albedo_materials.push_back(material);
+    if (!same) note_other_colors(set.name, model_.notes);
     return index;
   }
   TextureSet set;

@@ -100,23 +100,22 @@ class Writer {
     material["normalTexture"] = std::move(info);
   }
 
-  /// A new colour texture has the UVs that the normal texture has.
+  /// The colours were edited in the UVs of the normal texture, where there is one.
   void set_color_map(Json& material, std::size_t image) {
-    if (older_color(material)) {
-      set_texture(material["extensions"][older_material]["diffuseTexture"], image);
-      return;
+    const bool older = older_color(material);
+    Json& owner = older ? material["extensions"][older_material] : material["pbrMetallicRoughness"];
+    if (!owner.is_object()) owner = Json::object();
+    Json& info = owner[older ? "diffuseTexture" : "baseColorTexture"];
+    const Json* sampler = sampler_of(info);
+    const Json kept = sampler == nullptr ? Json() : *sampler;
+    if (material.contains("normalTexture")) {
+      Json like = material["normalTexture"];
+      like.erase("scale");
+      info = std::move(like);
     }
-    Json& pbr = material["pbrMetallicRoughness"];
-    if (!pbr.is_object()) pbr = Json::object();
-    Json info = Json::object();
-    if (pbr.contains("baseColorTexture")) {
-      info = pbr["baseColorTexture"];
-    } else if (material.contains("normalTexture")) {
-      info = material["normalTexture"];
-      info.erase("scale");
-    }
+    if (!info.is_object()) info = Json::object();
     set_texture(info, image);
-    pbr["baseColorTexture"] = std::move(info);
+    if (!kept.is_null()) file_.json["textures"].back()["sampler"] = kept;
   }
 
   /// Does the material have its colours in the extension that came before glTF's own?

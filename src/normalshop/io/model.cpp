@@ -53,6 +53,15 @@ bool is_model_file(const fs::path& path) {
   return extension == ".gltf" || extension == ".glb" || extension == ".obj";
 }
 
+void note_other_colors(const std::string& set, std::vector<std::string>& notes) {
+  std::string sentence = "the materials of the texture set '" + set +
+                         "' have different colours: those of the first are shown, and edits move "
+                         "no others";
+  if (std::find(notes.begin(), notes.end(), sentence) == notes.end()) {
+    notes.push_back(std::move(sentence));
+  }
+}
+
 Model read_model(const fs::path& path, const ModelReadOptions& options) {
   const std::string extension = extension_of(path);
   if (!is_model_file(path)) {

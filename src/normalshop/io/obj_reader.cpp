@@ -301,6 +301,7 @@ class ObjReader {
         other.materials.push_back(set.materials[0]);
         const bool same = set.albedo && other.albedo && set.albedo->path == other.albedo->path;
         if (same) other.albedo_materials.push_back(set.materials[0]);
+        if (!same && (set.albedo || other.albedo)) note_other_colors(other.name, model_.notes);
         continue;
       }
       if (set.albedo) set.albedo_materials = set.materials;

@@ -35,6 +35,9 @@ struct ModelSource {
 /// Unique, non-empty, ASCII letters, digits, "-", "_" and "." only, not starting with ".".
 std::string file_safe_name(const std::string& wanted, const std::vector<TextureSet>& others);
 
+/// Says once that not all materials of a texture set have the colours that it shows.
+void note_other_colors(const std::string& set, std::vector<std::string>& notes);
+
 /// Fills normals of corners that have none (zero vectors) from the faces.
 void fill_normals(Mesh& mesh);
 
