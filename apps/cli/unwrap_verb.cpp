@@ -11,6 +11,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/value.h"
+#include "normalshop/io/atomic_file.h"
 #include "normalshop/io/gltf_export.h"
 #include "normalshop/io/model.h"
 #include "normalshop/surface/unwrap.h"
@@ -40,6 +41,17 @@ std::string range_text(double low, double high) {
   return text.data();
 }
 
+/// The .bin beside the output must not be one that the model reads.
+void check_buffer(const UnwrapFlags& flags) {
+  fs::path binary = flags.output;
+  binary.replace_extension(".bin");
+  std::error_code ignored;
+  const fs::path own = flags.model.parent_path() / binary.filename();
+  if (flags.model.extension() != ".gltf" || !fs::equivalent(own, binary, ignored)) return;
+  if (read_file(flags.model).find(binary.filename().string()) == std::string::npos) return;
+  throw WrongUse("--output", "would write over '" + binary.string() + "', which the model reads");
+}
+
 void check_flags(const UnwrapFlags& flags) {
   for_each_field<UnwrapOptions>([&](const auto& f) {
     const auto value = static_cast<double>(flags.options.*f.member);
@@ -53,6 +65,7 @@ void check_flags(const UnwrapFlags& flags) {
   if (fs::equivalent(flags.model, flags.output, ignored)) {
     throw WrongUse("--output", "must not be the model itself");
   }
+  check_buffer(flags);
 }
 
 /// One texture set, called like the file.

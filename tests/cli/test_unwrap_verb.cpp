@@ -85,17 +85,31 @@ TEST_F(UnwrapVerb, ReportsWhatItWrote) {
 }
 
 TEST_F(UnwrapVerb, OptionsArrive) {
-  const auto charts = [&](const Arguments& more) {
+  write_gltf(folder_ / "cube.gltf", cube(2));
+  const auto report = [&](const char* model, const Arguments& more, const char* field) {
     Arguments all = more;
     all.emplace_back("--json");
-    const ProgramRun run = unwrap_to("ball.gltf", "out.gltf", all);
+    const ProgramRun run = unwrap_to(model, "out.gltf", all);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    return number(parse_json(run.out, "standard output"), "charts");
+    return number(parse_json(run.out, "standard output"), field);
   };
-  const double usual = charts({});
-  EXPECT_GT(charts({"--stretch", "1.01"}), usual);
-  EXPECT_GT(charts({"--angle", "20"}), usual);
-  EXPECT_EQ(charts({"--across-hard-edges"}), usual);
+  const double usual = report("ball.gltf", {}, "charts");
+  EXPECT_GT(report("ball.gltf", {"--stretch", "1.01"}, "charts"), usual);
+  EXPECT_GT(report("ball.gltf", {"--angle", "20"}, "charts"), usual);
+  EXPECT_EQ(report("cube.gltf", {}, "charts"), 6.0);
+  EXPECT_LT(report("cube.gltf", {"--across-hard-edges"}, "charts"), 6.0);
+  // A wide gutter in a small map leaves less of it to the triangles.
+  EXPECT_LT(report("cube.gltf", {"--size", "128", "--gutter", "12"}, "coverage"),
+            report("cube.gltf", {"--size", "1024", "--gutter", "1"}, "coverage") - 0.05);
+}
+
+TEST_F(UnwrapVerb, KeepsTheBufferThatTheModelReads) {
+  const std::string text = read_file(folder_ / "ball.gltf");
+  write_file(folder_ / "other.gltf", std::string_view(text));  // reads ball.bin, too
+  const std::string before = read_file(folder_ / "ball.bin");
+  const ProgramRun run = call_program({"unwrap", path("other.gltf"), "-o", path("ball.gltf")});
+  expect_refused(run, 2, "ball.bin");
+  EXPECT_EQ(read_file(folder_ / "ball.bin"), before);
 }
 
 TEST_F(UnwrapVerb, RefusesInOneLine) {

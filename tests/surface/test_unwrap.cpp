@@ -265,6 +265,10 @@ TEST(Unwrap, GutterStaysFree) {
         const std::uint32_t beside = chart[static_cast<std::size_t>(y * 512 + other)];
         if (beside != no_chart && beside != own) ++near;
       }
+      for (int other = y + 1; other <= std::min(511, y + 9); ++other) {
+        const std::uint32_t below = chart[static_cast<std::size_t>(other * 512 + x)];
+        if (below != no_chart && below != own) ++near;
+      }
     }
   }
   EXPECT_EQ(near, 0U);

@@ -99,7 +99,8 @@ class Packer {
     largest_scale_ = 1.42 * strip_width / longest->longest;
     // However small the shapes, each takes a cell and its share of the rims.
     const double least = (1.0 + rim_) * (1.0 + rim_) * static_cast<double>(shapes.size());
-    if (shapes.size() > 1 && least > 0.8 * strip_width * strip_width) refuse();
+    const bool crowded = shapes.size() > 1 && least > 0.8 * strip_width * strip_width;
+    if (crowded || rim_ >= strip_width) refuse();
   }
 
   Packing run() {

@@ -46,8 +46,8 @@ struct UnwrapReport {
   double coverage = 0.0;         ///< share of the map's area that triangles cover
   double mean_stretch = 1.0;     ///< by area on the surface
   double largest_stretch = 1.0;  ///< of any triangle
-  std::size_t overlaps = 0;      ///< pairs of triangles that overlap in the map; always 0
-  std::size_t turned_over = 0;   ///< triangles that are mirrored in the map; always 0
+  std::size_t overlaps = 0;      ///< pairs of triangles that overlap in the map; 0
+  std::size_t turned_over = 0;   ///< mirrored in the map: 0, but for needles as thin as rounding
 };
 
 /// Gives the mesh a new atlas: fills uvs, drops tangents, and makes all triangles one texture set
