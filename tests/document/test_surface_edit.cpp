@@ -81,6 +81,24 @@ TEST(SurfaceEdit, BothSidesOfASeamAgreeAfterwards) {
   EXPECT_LT(after, 0.2);
 }
 
+/// Low-pass filters replace what they smooth; a border of the surface must not show through.
+TEST(SurfaceEdit, AFilterSeesNoBorderOfATiltedSurface) {
+  for (const char* mode : {"view", "base"}) {
+    Document plane = document(plane_grid(2), noise_map(atlas_size, CodeType::U16));
+    plane.apply(edit(R"("operator": "smooth", "view": {"direction": [0.8, 0.3, 1]}, "mode": ")" +
+                     std::string(mode) + R"(", "options": {"sigma": 0.04})"));
+    float rim = 0.0F;
+    for (int i = 0; i < atlas_size; ++i) {
+      for (const Vec3f& n :
+           {map_of(plane).normal(0, i), map_of(plane).normal(i, 0),
+            map_of(plane).normal(atlas_size - 1, i), map_of(plane).normal(i, atlas_size - 1)}) {
+        rim = std::max(rim, degrees_between(n, Vec3f::UnitZ()));
+      }
+    }
+    EXPECT_LT(rim, 8.0F) << mode;  // what is left of the noise; the plane's slope is 40 degrees
+  }
+}
+
 TEST(SurfaceEdit, StrengthIsAPartOfIt) {
   Document none = wavy_sphere(0.3F);
   Document half = none;

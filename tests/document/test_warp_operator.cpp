@@ -179,6 +179,20 @@ TEST(WarpOperator, ColoursOfAMeshMoveAsThoseOfAPicture) {
   EXPECT_LT(degrees_between(map_of(mesh).normal(50, 52), picture.normals().normal(50, 52)), 1.0F);
 }
 
+/// There is nothing beyond the border that could come in.
+TEST(WarpOperator, OneColourStaysOneUpToTheBorder) {
+  RawImage codes(64, 64, 3, CodeType::U8);
+  std::fill_n(codes.data(), codes.size_bytes(), std::uint8_t{200});
+  std::vector<Document::Maps> maps;
+  maps.push_back({flat_normal_map(64, 64, CodeType::U8), ColorMap(std::move(codes))});
+  Document mesh(plane_grid(2), std::move(maps));
+  mesh.apply(edit(R"("operator": "warp",
+      "view": {"direction": [0.3, 0.2, 1]}, "options": {"kind": "grab", "radius": 0.4},
+      "strokes": [[[-0.4, 0], [-0.2, 0.1]]])"));
+  const RawImage after = mesh.storage().sets[0].albedo.encode();
+  for (std::size_t i = 0; i < after.size_bytes(); ++i) ASSERT_EQ(after.data()[i], 200) << i;
+}
+
 TEST(WarpOperator, ColoursStayWhereTheyAreOnRequest) {
   const ImageDocument picture = bump_at({-8.0F, 4.0F});
   Document mesh = mesh_of(picture);

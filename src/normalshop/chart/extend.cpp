@@ -9,14 +9,16 @@ namespace normalshop {
 
 namespace {
 
+template <class T>
 struct Level {
-  Image<Vec2f> value;
+  Image<T> value;
   Image<float> weight;
 };
 
 /// Half the size: weighted means of 2 x 2 pixels, the weight saturating at 1.
-Level pull_level(ImageView<Vec2f> value, MaskView weight) {
-  Level out;
+template <class T>
+Level<T> pull_level(ImageView<T> value, MaskView weight) {
+  Level<T> out;
   const int width = (value.width() + 1) / 2;
   const int height = (value.height() + 1) / 2;
   out.value.resize(width, height);
@@ -24,7 +26,7 @@ Level pull_level(ImageView<Vec2f> value, MaskView weight) {
   parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
       for (int x = 0; x < width; ++x) {
-        Vec2f sum = Vec2f::Zero();
+        T sum = T::Zero();
         float total = 0.0F;
         for (int j = 2 * y; j < std::min(2 * y + 2, value.height()); ++j) {
           for (int i = 2 * x; i < std::min(2 * x + 2, value.width()); ++i) {
@@ -33,7 +35,7 @@ Level pull_level(ImageView<Vec2f> value, MaskView weight) {
             total += w;
           }
         }
-        out.value(x, y) = total > 0.0F ? Vec2f(sum / total) : Vec2f(0.0F, 0.0F);
+        out.value(x, y) = total > 0.0F ? T(sum / total) : T(T::Zero());
         out.weight(x, y) = std::min(1.0F, total);
       }
     }
@@ -42,7 +44,8 @@ Level pull_level(ImageView<Vec2f> value, MaskView weight) {
 }
 
 /// Fills pixels of weight below 1 from the next coarser, already full level (bilinear).
-void push_level(const Image<Vec2f>& coarse, MaskView weight, ImageSpan<Vec2f> value) {
+template <class T>
+void push_level(const Image<T>& coarse, MaskView weight, ImageSpan<T> value) {
   parallel_for(static_cast<std::size_t>(value.height()), 32, [&](std::size_t a, std::size_t b) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
       for (int x = 0; x < value.width(); ++x) {
@@ -52,17 +55,16 @@ void push_level(const Image<Vec2f>& coarse, MaskView weight, ImageSpan<Vec2f> va
         const int cy = y / 2;
         const int nx = std::clamp(cx + ((x & 1) != 0 ? 1 : -1), 0, coarse.width() - 1);
         const int ny = std::clamp(cy + ((y & 1) != 0 ? 1 : -1), 0, coarse.height() - 1);
-        const Vec2f up = 0.75F * (0.75F * coarse(cx, cy) + 0.25F * coarse(nx, cy)) +
-                         0.25F * (0.75F * coarse(cx, ny) + 0.25F * coarse(nx, ny));
+        const T up = 0.75F * (0.75F * coarse(cx, cy) + 0.25F * coarse(nx, cy)) +
+                     0.25F * (0.75F * coarse(cx, ny) + 0.25F * coarse(nx, ny));
         value(x, y) = w * value(x, y) + (1.0F - w) * up;
       }
     }
   });
 }
 
-}  // namespace
-
-void extend(MaskView validity, SlopeSpan values) {
+template <class T>
+void extend_values(MaskView validity, ImageSpan<T> values) {
   if (values.empty()) return;
   // Validity may be a soft weight; here a pixel is valid or not.
   Image<float> weight(values.width(), values.height());
@@ -74,16 +76,21 @@ void extend(MaskView validity, SlopeSpan values) {
     }
   }
   if (!holes) return;
-  std::vector<Level> levels;
-  levels.push_back(pull_level(values, weight));
+  std::vector<Level<T>> levels;
+  levels.push_back(pull_level<T>(values, weight));
   while (levels.back().value.width() > 1 || levels.back().value.height() > 1) {
-    const Level& last = levels.back();
-    levels.push_back(pull_level(last.value, last.weight));
+    const Level<T>& last = levels.back();
+    levels.push_back(pull_level<T>(last.value, last.weight));
   }
   for (std::size_t i = levels.size() - 1; i > 0; --i) {
-    push_level(levels[i].value, levels[i - 1].weight, levels[i - 1].value);
+    push_level<T>(levels[i].value, levels[i - 1].weight, levels[i - 1].value);
   }
-  push_level(levels[0].value, weight, values);
+  push_level<T>(levels[0].value, weight, values);
 }
+
+}  // namespace
+
+void extend(MaskView validity, SlopeSpan values) { extend_values(validity, values); }
+void extend(MaskView validity, ColorSpan values) { extend_values(validity, values); }
 
 }  // namespace normalshop

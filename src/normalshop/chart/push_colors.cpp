@@ -18,8 +18,8 @@ class ColorSampler {
  public:
   ColorSampler(const EditingChart& chart, const ColorEdit& edit)
       : reach_(chart, edit.region, [&](int x, int y) { return !edit.change(x, y).isZero(0.0F); }),
-        red_green_(chart.grid.width(), chart.grid.height()),
-        blue_(chart.grid.width(), chart.grid.height()) {
+        red_green_(chart.grid.width(), chart.grid.height(), Vec2f(0.0F, 0.0F)),
+        blue_(chart.grid.width(), chart.grid.height(), Vec2f(0.0F, 0.0F)) {
     assert(edit.change.rect() == chart.weight.rect());
     for_pixels(reach_.region(), [&](int x, int y) {
       const Vec3f& c = edit.change(x, y);
@@ -65,7 +65,6 @@ class SetColorPush {
   ColorPushResult run() {
     const std::vector<Rect> tiles = candidates_.tiles();
     if (tiles.empty()) return {};
-    albedo_.begin_edits();
     shared_ = shared_writes();
     keep_strongest(shared_);
     std::vector<TexelWrite> gutter = gutter_writes();
@@ -164,16 +163,25 @@ void find_texels(const Mesh& mesh, std::uint32_t index, StorageSet& set) {
 
 }  // namespace
 
+void prepare_colors(const Mesh& mesh, StorageAtlas& storage) {
+  for (std::size_t i = 0; i < storage.sets.size(); ++i) {
+    StorageSet& set = storage.sets[i];
+    if (set.albedo.empty()) continue;
+    find_texels(mesh, static_cast<std::uint32_t>(i), set);
+    set.albedo.begin_edits();
+  }
+}
+
 ColorPushResult push_colors(const Mesh& mesh, const EditingChart& chart, const ColorEdit& edit,
                             StorageAtlas& storage) {
+  prepare_colors(mesh, storage);
   const ColorSampler sampler(chart, edit);
   ColorPushResult all;
   for (std::size_t i = 0; i < storage.sets.size(); ++i) {
     StorageSet& set = storage.sets[i];
     if (set.albedo.empty()) continue;
-    const auto index = static_cast<std::uint32_t>(i);
-    find_texels(mesh, index, set);
-    const ColorPushResult pushed = SetColorPush(mesh, sampler, set, index).run();
+    const ColorPushResult pushed =
+        SetColorPush(mesh, sampler, set, static_cast<std::uint32_t>(i)).run();
     all.visited += pushed.visited;
     all.changed += pushed.changed;
   }

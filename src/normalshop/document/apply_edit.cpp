@@ -114,6 +114,11 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
   if (cover.views.empty() || !(options == cover.options)) {
     cover = {options, cover_surface(mesh, options)};
   }
+  if (cover.views.empty()) {
+    throw InvalidInput(edit.path +
+                       ".view: no view shows a front side of the surface; the model's " +
+                       "normals must point outwards");
+  }
   EditReport report;
   report.times.pull = watch.lap();
   SurfaceBlend blend(storage);
@@ -138,6 +143,11 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   if (const auto* surface = std::get_if<SurfaceView>(&edit.view)) {
     return apply_to_surface(edit, *surface, mesh, seams, cover, storage, transfer);
   }
+  if (edit.mirror && transfer.update != Update::Gather) {
+    throw InvalidInput(edit.path +
+                       ".mirror must be left out where the update is by point or area: each side "
+                       "would write its values over the other's");
+  }
   const View view = resolve(edit.view, mesh);
   PreparedEdit side = prepare_edit(edit, view, mesh, storage, transfer);
   std::optional<PreparedEdit> other;  // before any push: both see what was there, and throw in time
@@ -149,6 +159,8 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
       throw InvalidInput(edit.path + ".mirror: on the other side, " + error.what());
     }
   }
+  // What needs memory comes before anything changes.
+  if (!side.colors.change.empty()) prepare_colors(mesh, storage);
   push_prepared(edit, mesh, seams, side, storage);
   if (!other) return side.report;
   push_prepared(edit, mesh, seams, *other, storage);

@@ -41,8 +41,8 @@ MaskImage limit_grazing(SlopeSpan slopes) {
   return grazing;
 }
 
-void replace_details(MaskView grazing, float finer, SlopeView before,
-                     const ImageView<Vec3f>& base_normals, EditMode mode, OperatorResult& result) {
+void replace_details(MaskView grazing, float finer, SlopeView before, SlopeView base,
+                     OperatorResult& result) {
   for_pixels(result.region, [&](int x, int y) {
     Vec2f& change = result.change(x, y);
     float& coverage = result.coverage(x, y);
@@ -53,7 +53,7 @@ void replace_details(MaskView grazing, float finer, SlopeView before,
     }
     coverage *= part;
     if (coverage > 0.0F) {
-      change += coverage * (before(x, y) - base_gradient(base_normals(x, y), mode));
+      change += coverage * (before(x, y) - base(x, y));
     }
   });
 }

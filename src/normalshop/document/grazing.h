@@ -1,6 +1,5 @@
 #pragma once
 
-#include "normalshop/chart/details.h"
 #include "normalshop/document/operate.h"
 
 /// Details that the direction of an edit meets at a grazing angle: walls of letters, rough stone.
@@ -20,8 +19,10 @@ MaskImage limit_grazing(SlopeSpan slopes);
 
 /// Turns what an operator, reading `before`, added into what replaces it: change and coverage of
 /// result.region. It replaces as far as `grazing` (empty: 0) says, and everywhere as far as
-/// `finer`, EditOperator::removes_finer(), says. A pixel without any change stays so.
-void replace_details(MaskView grazing, float finer, SlopeView before,
-                     const ImageView<Vec3f>& base_normals, EditMode mode, OperatorResult& result);
+/// `finer`, EditOperator::removes_finer(), says. A pixel without any change stays so. `base`: the
+/// base surface's numbers, which bicubic reads at its borders need beyond it, too, unless `finer`
+/// is 0.
+void replace_details(MaskView grazing, float finer, SlopeView before, SlopeView base,
+                     OperatorResult& result);
 
 }  // namespace normalshop

@@ -62,7 +62,8 @@ struct Source {
 Source make_source(const Edit& edit, const EditingChart& chart) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
-  const bool with_base = edit.operation->reads_base();
+  const EditOperator& operation = *edit.operation;
+  const bool with_base = operation.reads_base() || operation.removes_finer(chart.grid.pixel) > 0.0F;
   const bool ignore = edit.details == DetailsRule::Ignore;
   const bool with_seen = ignore && edit.operation->picks();
   Source source{SlopeImage(width, height), {}, {}, MaskImage(width, height), {}};
@@ -139,6 +140,14 @@ EditPlace find_place(const Edit& edit, const CoverView& cover, const Bounds& box
   return place;
 }
 
+/// The base surface's numbers where there is surface.
+SlopeImage base_slopes(const EditingChart& chart, EditMode mode) {
+  SlopeImage base(chart.grid.width(), chart.grid.height());
+  for_pixels(base.rect(),
+             [&](int x, int y) { base(x, y) = base_gradient(chart.base_normal(x, y), mode); });
+  return base;
+}
+
 /// Runs the operator and lets go of what push does not need.
 void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   EditingChart& chart = prepared.chart;
@@ -152,8 +161,10 @@ void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   if (edit.operation->picks()) {
     input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
   }
+  // What moves may come from beyond the border, and bicubic reads there need it.
+  if (edit.operation->moves_colors() && !chart.albedo.empty()) extend(chart.weight, chart.albedo);
   input.colors = chart.albedo;
-  input.base = source.base;
+  if (edit.operation->reads_base()) input.base = source.base;
   input.validity = source.validity;
   prepared.result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
   const bool ignores = edit.details == DetailsRule::Ignore;
@@ -161,8 +172,9 @@ void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   const bool turns = finer > 0.0F || !source.grazing.empty();
   prepared.replaces = ignores || turns;
   if (turns) {
-    replace_details(source.grazing, finer, source.slopes, chart.base_normal, edit.mode,
-                    prepared.result);
+    const SlopeImage base =
+        source.base.empty() ? base_slopes(chart, edit.mode) : std::move(source.base);
+    replace_details(source.grazing, finer, source.slopes, base, prepared.result);
   }
   if (edit.operation->moves_colors() && !chart.albedo.empty()) {
     prepared.colors = run_colors(edit, input, chart.albedo);
