@@ -13,7 +13,7 @@ namespace normalshop {
 
 namespace {
 
-constexpr int candidates = 96;
+constexpr int direction_count = 96;
 constexpr int sample_count = 12288;
 constexpr float pixels_across = 256.0F;  // of the charts in which candidates are judged
 /// Views that improve less than this part of the whole area are not worth their time.
@@ -36,7 +36,7 @@ std::vector<Vec3f> directions() {
     out.push_back(-Vec3f::Unit(axis));
   }
   const double golden = 3.14159265358979 * (3.0 - std::sqrt(5.0));
-  const int count = candidates - 6;
+  const int count = direction_count - 6;
   for (int i = 0; i < count; ++i) {
     const double y = 1.0 - (2.0 * i + 1.0) / count;
     const double radius = std::sqrt(1.0 - y * y);
@@ -54,6 +54,23 @@ double area_of(const Mesh& mesh, std::size_t triangle) {
   return std::isfinite(area) ? area : 0.0;
 }
 
+/// The i-th of points that fill a triangle evenly: the R2 sequence (Roberts 2018), folded.
+SurfacePoint point_in(std::uint32_t triangle, int i) {
+  double u = std::fmod(1.0 / 3.0 + 0.7548776662466927 * i, 1.0);
+  double v = std::fmod(1.0 / 3.0 + 0.5698402909980532 * i, 1.0);
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  return {triangle, static_cast<float>(u), static_cast<float>(v)};
+}
+
+double total_area(const Mesh& mesh) {
+  double area = 0.0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) area += area_of(mesh, t);
+  return area;
+}
+
 /// Surface points of equal area each on the shown triangles; none without area.
 std::vector<SurfacePoint> spread_samples(const Mesh& shown) {
   std::vector<double> areas(shown.triangle_count());
@@ -66,14 +83,7 @@ std::vector<SurfacePoint> spread_samples(const Mesh& shown) {
     const auto found = std::upper_bound(areas.begin(), areas.end(), (i + 0.5) / sample_count * all);
     const auto triangle = static_cast<std::uint32_t>(
         std::min<std::ptrdiff_t>(found - areas.begin(), std::ssize(areas) - 1));
-    // R2 sequence (Roberts 2018), folded into the triangle.
-    double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
-    double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
-    if (u + v > 1.0) {
-      u = 1.0 - u;
-      v = 1.0 - v;
-    }
-    samples.push_back({triangle, static_cast<float>(u), static_cast<float>(v)});
+    samples.push_back(point_in(triangle, i));
   }
   return samples;
 }
@@ -120,7 +130,7 @@ float quality(const Seen& seen) {
   return seen.weight * squared * squared;
 }
 
-float share(const Seen& seen) { return seen.weight * facing_share(seen.cosine); }
+float counted(const Seen& seen) { return seen.weight * facing_share(seen.cosine); }
 
 /// The part in which the view counts; low above high: nowhere.
 void choose_part(const Mesh& mesh, const std::vector<Seen>& seen,
@@ -130,7 +140,7 @@ void choose_part(const Mesh& mesh, const std::vector<Seen>& seen,
   cover.low = Vec2f::Constant(3.4e38F);
   cover.high = -cover.low;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!(share(seen[i]) > least_share * all_shares[i])) continue;
+    if (!(counted(seen[i]) > least_share * all_shares[i])) continue;
     const Vec2f p = view.to_chart(position_at(mesh, samples[i]) - view.center).head<2>();
     cover.low = cover.low.cwiseMin(p);
     cover.high = cover.high.cwiseMax(p);
@@ -168,19 +178,33 @@ std::vector<std::size_t> choose(const std::vector<std::vector<Seen>>& seen, std:
   return chosen;
 }
 
-/// Triangles whose middle the views show with less than their full weight: what they leave to be
+/// Points of every shown triangle, more of large ones.
+std::vector<SurfacePoint> points_of_all(const Mesh& shown) {
+  const double spacing = total_area(shown) / sample_count;
+  std::vector<SurfacePoint> points;
+  for (std::size_t t = 0; t < shown.triangle_count(); ++t) {
+    const double area = area_of(shown, t);
+    if (!(area > 0.0)) continue;
+    const int count = static_cast<int>(std::clamp(area / spacing, 1.0, 16.0));
+    for (int i = 0; i < count; ++i) points.push_back(point_in(static_cast<std::uint32_t>(t), i));
+  }
+  return points;
+}
+
+/// Triangles of which the views show a point with less than full weight: what they leave to be
 /// shown; all others are points.
 std::shared_ptr<const Mesh> what_is_left(const Mesh& mesh, const Mesh& shown,
                                          const std::vector<CoverView>& views,
                                          const EffectiveOptions& effective) {
-  std::vector<SurfacePoint> middles;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    middles.push_back({static_cast<std::uint32_t>(t), 1.0F / 3.0F, 1.0F / 3.0F});
-  }
-  std::vector<float> weights(middles.size(), 0.0F);
+  const std::vector<SurfacePoint> points = points_of_all(shown);
+  std::vector<float> sums(points.size(), 0.0F);
   for (const CoverView& view : views) {
-    const std::vector<Seen> seen = look(mesh, view, effective, middles);
-    for (std::size_t i = 0; i < seen.size(); ++i) weights[i] += seen[i].weight;
+    const std::vector<Seen> seen = look(mesh, view, effective, points);
+    for (std::size_t i = 0; i < seen.size(); ++i) sums[i] += seen[i].weight;
+  }
+  std::vector<float> weights(mesh.triangle_count(), 1.0F);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    weights[points[i].triangle] = std::min(weights[points[i].triangle], sums[i]);
   }
   auto left = std::make_shared<Mesh>();
   left->positions = mesh.positions;
@@ -203,12 +227,12 @@ std::vector<CoverView> cover_layer(const Mesh& mesh, const std::shared_ptr<const
     seen.push_back(look(mesh, views.back(), options.effective, samples));
   }
   const bool given = options.views > 0 && !shown;
-  const auto limit = static_cast<std::size_t>(given ? options.views : candidates);
+  const auto limit = static_cast<std::size_t>(given ? options.views : direction_count);
   const std::vector<std::size_t> chosen =
       choose(seen, limit, given ? 0.0 : least_area * sample_count);
   std::vector<float> shares(samples.size(), 0.0F);
   for (const std::size_t v : chosen) {
-    for (std::size_t i = 0; i < samples.size(); ++i) shares[i] += share(seen[v][i]);
+    for (std::size_t i = 0; i < samples.size(); ++i) shares[i] += counted(seen[v][i]);
   }
   std::vector<CoverView> out;
   for (const std::size_t v : chosen) {
@@ -217,12 +241,6 @@ std::vector<CoverView> cover_layer(const Mesh& mesh, const std::shared_ptr<const
     if (view.low.x() < view.high.x()) out.push_back(std::move(view));
   }
   return out;
-}
-
-double total_area(const Mesh& mesh) {
-  double area = 0.0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) area += area_of(mesh, t);
-  return area;
 }
 
 }  // namespace

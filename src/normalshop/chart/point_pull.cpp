@@ -59,8 +59,6 @@ class PointPull {
   void land(const TexelLanes& lanes, std::uint32_t first, Landing& out) const;
   void drop(const Landing& landing, int count);
   void show(std::size_t set, TexelLanes& lanes, const Landing& landing);
-  void fill_frames(NormalSpace space, TexelLanes& lanes) const;
-  void read_stored(const NormalMap& map, const TexelLanes& lanes, PerLane<Vec3f>& stored) const;
   void fill_holes();
   void clear(std::size_t pixel);
   void copy(std::size_t from, std::size_t to, TriangleCache<PushTriangle>& triangles);
@@ -187,36 +185,6 @@ void PointPull::drop(const Landing& landing, int count) {
   }
 }
 
-void PointPull::fill_frames(NormalSpace space, TexelLanes& lanes) const {
-  if (space == NormalSpace::Tangent) return finish_frames(lanes.batch);
-  const View& view = chart_.grid.view;
-  for (int i = 0; i < lanes.batch.count; ++i) {
-    Mat3f frame;
-    frame << view.right.transpose(), view.up.transpose(), view.direction.transpose();
-    if (space == NormalSpace::Object) {
-      frame *= mesh_.node_frame(lanes.triangles[static_cast<std::size_t>(i)]);
-    }
-    lanes.batch.set_frame(i, frame);
-  }
-}
-
-void PointPull::read_stored(const NormalMap& map, const TexelLanes& lanes,
-                            PerLane<Vec3f>& stored) const {
-  const auto count = static_cast<std::size_t>(lanes.batch.count);
-  if (lanes.listed) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const TexelPlace at = texel_place(lanes.texels[i], map.width());
-      stored[i] = map.vector(at.x, at.y);
-    }
-    return;
-  }
-  const TexelPlace first = texel_place(lanes.texels[0], map.width());
-  PerLane<Vec3f> row;
-  map.read_vectors(first.x, static_cast<int>(lanes.texels[count - 1] - lanes.texels[0]) + 1,
-                   first.y, row.data());
-  for (std::size_t i = 0; i < count; ++i) stored[i] = row[lanes.texels[i] - lanes.texels[0]];
-}
-
 /// Writes the points that won their pixels: each pixel's is one.
 void PointPull::show(std::size_t set, TexelLanes& lanes, const Landing& landing) {
   TexelBatch& batch = lanes.batch;
@@ -229,10 +197,10 @@ void PointPull::show(std::size_t set, TexelLanes& lanes, const Landing& landing)
   }
   if (!any) return;
   const StorageSet& storage = storage_.sets[set];
-  PerLane<Vec3f> stored;
   if (options_.normals) {
-    fill_frames(storage.normals.convention().space, lanes);
-    read_stored(storage.normals, lanes, stored);
+    const NormalSpace space = storage.normals.convention().space;
+    fill_frames(mesh_, chart_.grid.view, space, lanes.triangles, batch);
+    read_stored(storage.normals, lanes);
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!wins[i]) continue;
@@ -246,7 +214,7 @@ void PointPull::show(std::size_t set, TexelLanes& lanes, const Landing& landing)
     const Vec3f base = batch.base.get(lane).normalized();
     chart_.base_normal.data()[pixel] = base;
     if (options_.normals) {
-      const Vec3f& v = stored[i];
+      const Vec3f v = batch.stored.get(lane);
       const Vec3f n = batch.tangent.get(lane) * v.x() + batch.bitangent.get(lane) * v.y() +
                       batch.normal.get(lane) * v.z();
       chart_.normal.data()[pixel] = codes::direction_of(v).isZero() ? base : n.normalized();

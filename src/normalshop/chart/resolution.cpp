@@ -13,7 +13,7 @@ namespace normalshop {
 
 namespace {
 
-constexpr float share = 0.95F;
+constexpr float covered_share = 0.95F;
 constexpr float facing_cosine = 0.2588F;  // cos 75 degrees
 
 struct Density {
@@ -106,7 +106,7 @@ float texel_pixel_size(const Mesh& mesh, const StorageAtlas& storage, const View
   double sum = 0.0;
   for (const Density& d : all) {
     sum += d.area;
-    if (sum >= share * total) return 1.0F / d.texels_per_unit;
+    if (sum >= covered_share * total) return 1.0F / d.texels_per_unit;
   }
   return 1.0F / all.back().texels_per_unit;
 }

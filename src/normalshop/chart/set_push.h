@@ -46,7 +46,6 @@ class SetPush {
 
  private:
   using Cache = TriangleCache<PushTriangle>;
-  void fill_frames(const PerLane<std::uint32_t>& triangles, TexelBatch& batch) const;
   PushTally edit_row(TexelLanes& row);
   std::vector<TexelWrite> gutter_writes() const;
   std::vector<TexelWrite> shared_writes() const;
@@ -75,38 +74,15 @@ class SetPush {
 };
 
 template <class Target>
-void SetPush<Target>::fill_frames(const PerLane<std::uint32_t>& triangles,
-                                  TexelBatch& batch) const {
-  if (space_ == NormalSpace::Tangent) {
-    finish_frames(batch);
-    return;
-  }
-  const View& view = sampler_.grid().view;
-  for (int i = 0; i < batch.count; ++i) {
-    Mat3f frame;
-    frame << view.right.transpose(), view.up.transpose(), view.direction.transpose();
-    if (space_ == NormalSpace::Object) {
-      frame *= mesh_.node_frame(triangles[static_cast<std::size_t>(i)]);
-    }
-    batch.set_frame(i, frame);
-  }
-}
-
-template <class Target>
 PushTally SetPush<Target>::edit_row(TexelLanes& row) {
   TexelBatch& batch = row.batch;
   PushTally tally;
   tally.visited = static_cast<std::size_t>(batch.count);
   if (!sampler_.read(batch)) return tally;
-  fill_frames(row.triangles, batch);
+  fill_frames(mesh_, sampler_.grid().view, space_, row.triangles, batch);
   const std::uint32_t first = row.texels[0];
   const auto [x0, y] = texel(first);
-  const auto last = static_cast<std::size_t>(batch.count - 1);
-  PerLane<Vec3f> stored;
-  set_.normals.read_vectors(x0, static_cast<int>(row.texels[last] - first) + 1, y, stored.data());
-  for (int i = 0; i < batch.count; ++i) {
-    batch.stored.set(i, stored[row.texels[static_cast<std::size_t>(i)] - first]);
-  }
+  read_stored(set_.normals, row);
   apply(sampler_.mode(), batch);
   for (int i = 0; i < batch.count; ++i) {
     if (!batch.acts(i)) continue;
@@ -218,7 +194,7 @@ void SetPush<Target>::edit_shared(const PerLane<const SharedTexel*>& items, Cach
     const auto [x, y] = texel(s.texel);
     batch.stored.set(i, set_.normals.vector(x, y));
   }
-  fill_frames(ids, batch);
+  fill_frames(mesh_, sampler_.grid().view, space_, ids, batch);
   apply(sampler_.mode(), batch);
   collect(batch, items, out);
 }
@@ -277,12 +253,6 @@ PushTally SetPush<Target>::run() {
   tally.add(put(shared_));
   tally.add(put(gutter));
   return tally;
-}
-
-/// Degrees of the angle whose cosine is 1 - turn.
-inline float degrees_of_turn(float turn) {
-  const float half_sine = std::sqrt(std::min(1.0F, 0.5F * turn));
-  return 2.0F * std::asin(half_sine) * 180.0F / 3.14159265F;
 }
 
 }  // namespace normalshop

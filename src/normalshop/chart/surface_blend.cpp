@@ -9,7 +9,7 @@ namespace {
 
 constexpr int side = NormalMap::tile_size;
 
-std::size_t place_in_tile(int x, int y) {
+std::size_t index_of(int x, int y) {
   return static_cast<std::size_t>((y % side) * side + x % side);
 }
 
@@ -29,7 +29,7 @@ struct SurfaceBlend::Target {
     auto& tile = tiles[static_cast<std::size_t>(y / side * NormalMap::tiles_along(normals.width()) +
                                                 x / side)];
     if (!tile) tile = std::make_unique<Tile>();
-    const std::size_t i = place_in_tile(x, y);
+    const std::size_t i = index_of(x, y);
     const float factor = facing_share(write.facing);
     // The weight is in what the normal turns by already.
     tile->turned[i] += factor * (write.value - unit_or_zero(normals.vector(x, y)));
@@ -80,7 +80,7 @@ PushResult SurfaceBlend::write(StorageAtlas& storage) const {
           const Vec3f normal = after.normalized();
           if (normal == before) continue;
           map.set_normal(x, y, normal);
-          local.largest = std::max(local.largest, 1.0F - normal.dot(before));
+          if (!before.isZero()) local.largest = std::max(local.largest, 1.0F - normal.dot(before));
           ++local.changed;
         }
       }

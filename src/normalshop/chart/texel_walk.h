@@ -26,6 +26,40 @@ inline void add_texel(const TexelMap& texels, std::uint32_t triangle, int x, int
   batch.add_point(triangles.get(triangle), {1.0F, p.b1, p.b2});
 }
 
+/// Frames that decode the texels, for maps of that space.
+inline void fill_frames(const Mesh& mesh, const View& view, NormalSpace space,
+                        const PerLane<std::uint32_t>& triangles, TexelBatch& batch) {
+  if (space == NormalSpace::Tangent) return finish_frames(batch);
+  for (int i = 0; i < batch.count; ++i) {
+    Mat3f frame;
+    frame << view.right.transpose(), view.up.transpose(), view.direction.transpose();
+    if (space == NormalSpace::Object) {
+      frame *= mesh.node_frame(triangles[static_cast<std::size_t>(i)]);
+    }
+    batch.set_frame(i, frame);
+  }
+}
+
+/// What the map holds at the lanes' texels, for apply().
+inline void read_stored(const NormalMap& map, TexelLanes& lanes) {
+  TexelBatch& batch = lanes.batch;
+  const auto count = static_cast<std::size_t>(batch.count);
+  if (lanes.listed) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [x, y] = texel_place(lanes.texels[i], map.width());
+      batch.stored.set(static_cast<int>(i), map.vector(x, y));
+    }
+    return;
+  }
+  const std::uint32_t first = lanes.texels[0];
+  const auto [x, y] = texel_place(first, map.width());
+  PerLane<Vec3f> row;
+  map.read_vectors(x, static_cast<int>(lanes.texels[count - 1] - first) + 1, y, row.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    batch.stored.set(static_cast<int>(i), row[lanes.texels[i] - first]);
+  }
+}
+
 /// The texels whose owners are wanted(triangle), row by row. One for each task: it keeps what tiles
 /// have in common.
 template <class Wanted>

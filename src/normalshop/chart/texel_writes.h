@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "normalshop/chart/texel_batch.h"
@@ -32,6 +33,12 @@ inline bool holds_texel(const std::vector<TexelWrite>& writes, std::uint32_t tex
       std::lower_bound(writes.begin(), writes.end(), texel,
                        [](const TexelWrite& w, std::uint32_t t) { return w.texel < t; });
   return found != writes.end() && found->texel == texel;
+}
+
+/// Degrees of the angle whose cosine is 1 - turn.
+inline float degrees_of_turn(float turn) {
+  const float half_sine = std::sqrt(std::min(1.0F, 0.5F * turn));
+  return 2.0F * std::asin(half_sine) * 180.0F / 3.14159265F;
 }
 
 /// Is a weight larger than another by more than rounding?

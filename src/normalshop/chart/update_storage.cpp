@@ -34,8 +34,9 @@ class PixelsByTile {
     for (const StorageSet& set : storage.sets) {
       first_.push_back(tiles);
       widths_.push_back(static_cast<std::uint32_t>(set.normals.width()));
-      columns_.push_back(static_cast<std::size_t>(tiles_across(set.normals.width())));
-      tiles += columns_.back() * static_cast<std::size_t>(tiles_across(set.normals.height()));
+      columns_.push_back(static_cast<std::size_t>(NormalMap::tiles_along(set.normals.width())));
+      tiles +=
+          columns_.back() * static_cast<std::size_t>(NormalMap::tiles_along(set.normals.height()));
     }
     sort(tiles);
   }
@@ -47,7 +48,6 @@ class PixelsByTile {
 
  private:
   static constexpr int rows_a_chunk = 64;
-  static int tiles_across(int texels) { return (texels + update_tile - 1) / update_tile; }
 
   template <class Visit>
   void visit_chunk(std::size_t chunk, const Visit& visit) const {
@@ -247,8 +247,7 @@ PushResult update_storage(const Mesh& mesh, const EditingChart& chart, const Cha
     largest = std::max(largest, task.largest());
   });
   result.visited = result.changed;
-  const float half_sine = std::sqrt(std::min(1.0F, 0.5F * largest));
-  result.largest_change = 2.0F * std::asin(half_sine) * 180.0F / 3.14159265F;
+  result.largest_change = degrees_of_turn(largest);
   return result;
 }
 
