@@ -42,8 +42,7 @@ float stretch(const Vec2f& p1, const Vec2f& p2, const Vec2f& t1, const Vec2f& t2
 }
 
 Vec2f texels_across(const StorageSet& set, CountedTexels counted) {
-  const Vec2f normals(static_cast<float>(set.normals.width()),
-                      static_cast<float>(set.normals.height()));
+  Vec2f normals(static_cast<float>(set.normals.width()), static_cast<float>(set.normals.height()));
   if (counted == CountedTexels::Normals || set.albedo.empty()) return normals;
   const RawImage& colors = set.albedo.codes();
   return normals.cwiseMax(
