@@ -99,6 +99,17 @@ TEST(SurfaceEdit, AFilterSeesNoBorderOfATiltedSurface) {
   }
 }
 
+TEST(SurfaceEdit, NothingToFilterKeepsEveryCode) {
+  Document flat =
+      document(uv_sphere(64, 32), flat_normal_map(atlas_size, atlas_size, CodeType::U16));
+  EXPECT_EQ(flat.apply(edit(smooth_all())).pushed.changed, 0U);
+  EXPECT_EQ(flat.apply(edit(R"("operator": "filter", "view": "surface",
+                               "options": {"kind": "scale", "amount": 2})"))
+                .pushed.changed,
+            0U);
+  EXPECT_FALSE(map_of(flat).has_edits());
+}
+
 TEST(SurfaceEdit, StrengthIsAPartOfIt) {
   Document none = wavy_sphere(0.3F);
   Document half = none;
@@ -135,11 +146,15 @@ TEST(SurfaceEdit, SaysWhatDoesNotFit) {
             "\"x\"");
   EXPECT_NE(refusal(smooth_all() + R"(, "strokes": [[[0, 0]]])").find("edits[0].strokes"),
             std::string::npos);
-  const std::string pen =
-      refusal(R"("operator": "pen", "view": "surface", "options": {"width": 1, "height": 1})");
-  EXPECT_EQ(pen,
-            "r.json: edits[0].view must be one view, since \"pen\" needs strokes here, not "
-            "the text \"surface\"");
+  for (const char* strokes : {"", R"(, "strokes": [[[0, 0], [1, 1]]])"}) {
+    EXPECT_EQ(refusal(R"("operator": "pen", "view": "surface",
+                         "options": {"width": 1, "height": 1})" +
+                      std::string(strokes)),
+              "r.json: edits[0].view must be front, back, left, right, top or bottom, or an object "
+              "with \"direction\" or \"facing\", since \"pen\" needs strokes here, not the text "
+              "\"surface\"");
+  }
+  EXPECT_NE(refusal(smooth_all(R"({"surface": 3})")).find("\"views\""), std::string::npos);
   EXPECT_NE(refusal(smooth_all(R"({"surface": {"views": 0}})")).find("from 1 to 96"),
             std::string::npos);
   EXPECT_NE(refusal(smooth_all(R"({"surface": {"view": 3}})")).find("surface"), std::string::npos);

@@ -105,8 +105,8 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
                             StorageAtlas& storage, const TransferOptions& transfer) {
   if (!(transfer == TransferOptions{})) {
     throw InvalidInput(edit.path +
-                       ".view must be one view where the transfer is by points or the update "
-                       "by point or area: the whole surface is pulled by triangles and gathered");
+                       ".view must be one view, not \"surface\", with --transfer point or with "
+                       "--update point or area");
   }
   Stopwatch watch;
   const CoverOptions options{surface.views,
@@ -145,8 +145,8 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
   }
   if (edit.mirror && transfer.update != Update::Gather) {
     throw InvalidInput(edit.path +
-                       ".mirror must be left out where the update is by point or area: each side "
-                       "would write its values over the other's");
+                       ".mirror must be left out with --update point or area: each side would "
+                       "write its values over the other's");
   }
   const View view = resolve(edit.view, mesh);
   PreparedEdit side = prepare_edit(edit, view, mesh, storage, transfer);

@@ -36,6 +36,7 @@ ViewSpec read_view(const FieldReader& reader) {
   if (reader.has(surface_name)) {
     reader.only({surface_name});
     const FieldReader surface = reader.required(surface_name);
+    if (surface.value().object() == nullptr) surface.fail("an object with \"views\", 1 to 96");
     surface.only({"views"});
     return SurfaceView{surface.required("views").whole_number(1, most_views)};
   }
@@ -129,14 +130,15 @@ MirrorPlane read_mirror(const FieldReader& reader) {
 
 /// Strokes and planes of symmetry are of one view.
 void check_for_surface(const Edit& edit, const FieldReader& reader) {
-  for (const char* field : {"strokes", "mirror"}) {
-    if (reader.has(field)) reader.required(field).fail("left out where the view is \"surface\"");
-  }
   try {
     edit.operation->check_strokes({}, "");
   } catch (const InvalidInput&) {
-    reader.required("view").fail("one view, since \"" + std::string(edit.operation->name()) +
-                                 "\" needs strokes here");
+    reader.required("view").fail(join_names(names_list<NamedView>()) +
+                                 ", or an object with \"direction\" or \"facing\", since \"" +
+                                 std::string(edit.operation->name()) + "\" needs strokes here");
+  }
+  for (const char* field : {"strokes", "mirror"}) {
+    if (reader.has(field)) reader.required(field).fail("left out where the view is \"surface\"");
   }
 }
 
