@@ -106,13 +106,12 @@ std::vector<Seen> look(const Mesh& mesh, const CoverView& cover, const Effective
   const EditReach reach(chart, chart.weight.rect(), [](int, int) { return true; });
   std::vector<Seen> seen(samples.size());
   TexelBatch batch;
-  PushTriangle triangle;
+  TriangleCache<PushTriangle> triangles(mesh, chart.grid);  // samples come by triangle
   for (std::size_t begin = 0; begin < samples.size(); begin += TexelBatch::capacity) {
     const std::size_t end = std::min(samples.size(), begin + TexelBatch::capacity);
     batch.count = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      triangle.load(mesh, chart.grid, samples[i].triangle);
-      batch.add_point(triangle, {1.0F, samples[i].b1, samples[i].b2});
+      batch.add_point(triangles.get(samples[i].triangle), {1.0F, samples[i].b1, samples[i].b2});
     }
     if (!read_visible_weight(reach, batch)) continue;
     for (int i = 0; i < batch.count; ++i) {
