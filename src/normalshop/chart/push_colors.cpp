@@ -109,26 +109,16 @@ class SetColorPush {
   }
 
   std::vector<TexelWrite> gutter_writes() const {
-    return collect_writes(
-        texels_.gutter(), mesh_, sampler_.reach().grid(),
-        [&](const GutterTexel& g) { return candidates_.contains(gutter_source(g).triangle); },
-        [](const GutterTexel& g, Cache& triangles, TexelBatch& batch) {
-          const SurfacePoint p = gutter_source(g);
-          batch.add_point(triangles.get(p.triangle), {1.0F, p.b1, p.b2});
-        },
+    return collect_gutter(
+        texels_, mesh_, sampler_.reach().grid(), candidates_,
         [&](const auto& items, Cache&, TexelBatch& batch, std::vector<TexelWrite>& out) {
           if (sampler_.read(batch)) collect(items, batch, out);
         });
   }
 
   std::vector<TexelWrite> shared_writes() const {
-    return collect_writes(
-        texels_.shared(), mesh_, sampler_.reach().grid(),
-        [&](const SharedTexel& s) { return candidates_.contains(s.triangle); },
-        [&](const SharedTexel& s, Cache& triangles, TexelBatch& batch) {
-          const auto [x, y] = texel_place(s.texel, texels_.width());
-          add_texel(texels_, s.triangle, x, y, triangles, batch);
-        },
+    return collect_shared(
+        texels_, mesh_, sampler_.reach().grid(), candidates_,
         [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
           if (!sampler_.read(batch)) return;
           drop_lanes_of_owners(items, texels_, candidates_, triangles, sampler_, batch);

@@ -170,13 +170,8 @@ void SetPush<Target>::collect(const TexelBatch& batch, const PerLane<const Item*
 /// frame of the chart beside it, which decodes it. Beside a hard edge it takes that of the border.
 template <class Target>
 std::vector<TexelWrite> SetPush<Target>::gutter_writes() const {
-  return collect_writes(
-      set_.texels.gutter(), mesh_, sampler_.grid(),
-      [&](const GutterTexel& g) { return candidates_.contains(gutter_source(g).triangle); },
-      [&](const GutterTexel& g, Cache& triangles, TexelBatch& batch) {
-        const SurfacePoint p = gutter_source(g);
-        batch.add_point(triangles.get(p.triangle), {1.0F, p.b1, p.b2});
-      },
+  return collect_gutter(
+      set_.texels, mesh_, sampler_.grid(), candidates_,
       [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
         edit_gutter(items, triangles, batch, out);
       });
@@ -202,13 +197,8 @@ void SetPush<Target>::edit_shared(const PerLane<const SharedTexel*>& items, Cach
 /// Texels that further triangles cover, which the chart sees more squarely than their owner.
 template <class Target>
 std::vector<TexelWrite> SetPush<Target>::shared_writes() const {
-  return collect_writes(
-      set_.texels.shared(), mesh_, sampler_.grid(),
-      [&](const SharedTexel& s) { return candidates_.contains(s.triangle); },
-      [&](const SharedTexel& s, Cache& triangles, TexelBatch& batch) {
-        const auto [x, y] = texel(s.texel);
-        add_texel(set_.texels, s.triangle, x, y, triangles, batch);
-      },
+  return collect_shared(
+      set_.texels, mesh_, sampler_.grid(), candidates_,
       [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
         edit_shared(items, triangles, batch, out);
       });

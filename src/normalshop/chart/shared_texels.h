@@ -37,4 +37,34 @@ void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, const TexelM
   }
 }
 
+/// collect_writes() of the gutter texels that candidates decide.
+template <class Edit>
+std::vector<TexelWrite> collect_gutter(const TexelMap& texels, const Mesh& mesh,
+                                       const ChartGrid& grid, const PushCandidates& candidates,
+                                       const Edit& edit) {
+  return collect_writes(
+      texels.gutter(), mesh, grid,
+      [&](const GutterTexel& g) { return candidates.contains(gutter_source(g).triangle); },
+      [](const GutterTexel& g, TriangleCache<PushTriangle>& triangles, TexelBatch& batch) {
+        const SurfacePoint p = gutter_source(g);
+        batch.add_point(triangles.get(p.triangle), {1.0F, p.b1, p.b2});
+      },
+      edit);
+}
+
+/// collect_writes() of the texels that candidates share with their owners.
+template <class Edit>
+std::vector<TexelWrite> collect_shared(const TexelMap& texels, const Mesh& mesh,
+                                       const ChartGrid& grid, const PushCandidates& candidates,
+                                       const Edit& edit) {
+  return collect_writes(
+      texels.shared(), mesh, grid,
+      [&](const SharedTexel& s) { return candidates.contains(s.triangle); },
+      [&](const SharedTexel& s, TriangleCache<PushTriangle>& triangles, TexelBatch& batch) {
+        const auto [x, y] = texel_place(s.texel, texels.width());
+        add_texel(texels, s.triangle, x, y, triangles, batch);
+      },
+      edit);
+}
+
 }  // namespace normalshop
