@@ -7,13 +7,8 @@ namespace normalshop {
 
 namespace {
 
-constexpr int side = NormalMap::tile_size;
 /// Squared: what adding up leaves of no change, a thirtieth of a 16-bit code.
 constexpr float least_turn = 1e-12F;
-
-std::size_t index_of(int x, int y) {
-  return static_cast<std::size_t>((y % side) * side + x % side);
-}
 
 Vec3f unit_or_zero(const Vec3f& v) {
   const Vec3f direction = codes::direction_of(v);
@@ -31,7 +26,7 @@ struct SurfaceBlend::Target {
     auto& tile = tiles[static_cast<std::size_t>(y / side * NormalMap::tiles_along(normals.width()) +
                                                 x / side)];
     if (!tile) tile = std::make_unique<Tile>();
-    const std::size_t i = index_of(x, y);
+    const std::size_t i = NormalMap::index_in_tile(x, y);
     const float factor = facing_share(write.facing);
     // The weight is in what the normal turns by already.
     tile->turned[i] += factor * (write.value - unit_or_zero(normals.vector(x, y)));
@@ -57,6 +52,32 @@ void SurfaceBlend::add(const Mesh& mesh, const EditingChart& chart, const ChartE
   }
 }
 
+/// What the sums make of one texel; zero where they leave it as it is.
+Vec3f SurfaceBlend::Tile::result(std::size_t i, const Vec3f& before) const {
+  const float part = std::min(1.0F, weight[i]) / share[i];
+  const Vec3f after = before + part * turned[i];
+  if (!after.allFinite() || !(after.norm() > 1e-6F)) return Vec3f::Zero();
+  const Vec3f normal = after.normalized();
+  return (normal - before).squaredNorm() < least_turn ? Vec3f(Vec3f::Zero()) : normal;
+}
+
+PushTally SurfaceBlend::write_tile(const Tile& tile, int x0, int y0, NormalMap& map) {
+  PushTally tally;
+  for (int i = 0; i < side * side; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!(tile.share[k] > 0.0F)) continue;
+    const int x = x0 + i % side;
+    const int y = y0 + i / side;
+    const Vec3f before = unit_or_zero(map.vector(x, y));
+    const Vec3f normal = tile.result(k, before);
+    if (normal.isZero()) continue;
+    map.set_normal(x, y, normal);
+    if (!before.isZero()) tally.largest = std::max(tally.largest, 1.0F - normal.dot(before));
+    ++tally.changed;
+  }
+  return tally;
+}
+
 PushResult SurfaceBlend::write(StorageAtlas& storage) const {
   PushTally all;
   std::mutex mutex;
@@ -66,25 +87,9 @@ PushResult SurfaceBlend::write(StorageAtlas& storage) const {
     parallel_for(sets_[s].size(), 16, [&](std::size_t begin, std::size_t end) {
       PushTally local;
       for (std::size_t t = begin; t < end; ++t) {
-        const Tile* tile = sets_[s][t].get();
-        if (tile == nullptr) continue;
-        const int x0 = static_cast<int>(t) % columns * side;
-        const int y0 = static_cast<int>(t) / columns * side;
-        for (int i = 0; i < side * side; ++i) {
-          const auto k = static_cast<std::size_t>(i);
-          if (!(tile->share[k] > 0.0F)) continue;
-          const int x = x0 + i % side;
-          const int y = y0 + i / side;
-          const Vec3f before = unit_or_zero(map.vector(x, y));
-          const float part = std::min(1.0F, tile->weight[k]) / tile->share[k];
-          const Vec3f after = before + part * tile->turned[k];
-          if (!after.allFinite() || !(after.norm() > 1e-6F)) continue;
-          const Vec3f normal = after.normalized();
-          if ((normal - before).squaredNorm() < least_turn) continue;
-          map.set_normal(x, y, normal);
-          if (!before.isZero()) local.largest = std::max(local.largest, 1.0F - normal.dot(before));
-          ++local.changed;
-        }
+        const auto i = static_cast<int>(t);
+        if (!sets_[s][t]) continue;
+        local.add(write_tile(*sets_[s][t], i % columns * side, i / columns * side, map));
       }
       const std::lock_guard lock(mutex);
       all.add(local);

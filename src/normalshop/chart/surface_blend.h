@@ -8,6 +8,8 @@
 
 namespace normalshop {
 
+struct PushTally;
+
 /// One edit of a surface that no single view shows: what every view of it would do to a texel, as a
 /// mean that is continuous over the surface (a partition of unity). A view counts by its weight
 /// there times a power of the cosine between base normal and viewing direction, so that the one
@@ -33,9 +35,11 @@ class SurfaceBlend {
     std::array<float, side * side> share{};  ///< weight * power of the cosine
     std::array<float, side * side> weight{};
     Tile() { turned.fill(Vec3f::Zero()); }
+    Vec3f result(std::size_t i, const Vec3f& before) const;
   };
   struct Target;
   using Tiles = std::vector<std::unique_ptr<Tile>>;
+  static PushTally write_tile(const Tile& tile, int x0, int y0, NormalMap& map);
 
   std::vector<Tiles> sets_;
   std::size_t visited_ = 0;

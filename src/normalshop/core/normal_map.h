@@ -48,6 +48,9 @@ class NormalMap {
  public:
   static constexpr int tile_size = 64;
   static constexpr int tiles_along(int texels) { return (texels + tile_size - 1) / tile_size; }
+  static std::size_t index_in_tile(int x, int y) {
+    return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
+  }
 
   NormalMap() = default;
   /// Codes with 2 to 4 channels (3 to 4 unless two_channel). Throws InvalidInput otherwise.
@@ -110,9 +113,6 @@ class NormalMap {
   Vec3f sample_codes(const WrappedTaps& tap) const;
   const Tile* tile(int x, int y) const;
   bool may_read_edits(const float* u, const float* v, int count) const;
-  static std::size_t index_in_tile(int x, int y) {
-    return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
-  }
 
   RawImage codes_;
   NormalConvention convention_;
