@@ -215,13 +215,13 @@ std::shared_ptr<const Mesh> what_is_left(const Mesh& mesh, const Mesh& shown,
 }
 
 /// Views of the triangles that are shown.
-std::vector<CoverView> cover_layer(const Mesh& mesh, const std::shared_ptr<const Mesh>& shown,
+std::vector<CoverView> cover_layer(const Mesh& mesh, const std::vector<View>& candidates,
+                                   const std::shared_ptr<const Mesh>& shown,
                                    const CoverOptions& options, double least_area) {
   const std::vector<SurfacePoint> samples = spread_samples(shown ? *shown : mesh);
   std::vector<CoverView> views;
   std::vector<std::vector<Seen>> seen;
-  for (const Vec3f& direction : directions()) {
-    const View view = framing_view(mesh, direction);
+  for (const View& view : candidates) {
     views.push_back({view, Vec2f::Zero(), Vec2f::Zero(), shown});
     seen.push_back(look(mesh, views.back(), options.effective, samples));
   }
@@ -252,11 +252,14 @@ void CoverView::rasterize(const Mesh& mesh, const ChartGrid& grid, IdBuffer& out
 std::vector<CoverView> cover_surface(const Mesh& mesh, const CoverOptions& options) {
   const double all = total_area(mesh);
   if (!(all > 0.0)) throw InvalidInput("the model has no surface to cover");
-  std::vector<CoverView> views = cover_layer(mesh, nullptr, options, least_gain);
+  std::vector<View> candidates;
+  for (const Vec3f& direction : directions()) candidates.push_back(framing_view(mesh, direction));
+  std::vector<CoverView> views = cover_layer(mesh, candidates, nullptr, options, least_gain);
   std::shared_ptr<const Mesh> shown = what_is_left(mesh, mesh, views, options.effective);
   for (int layer = 1; layer < most_layers; ++layer) {
     if (!(total_area(*shown) > least_layer * all)) break;
-    const std::vector<CoverView> inner = cover_layer(mesh, shown, options, least_inner_gain);
+    const std::vector<CoverView> inner =
+        cover_layer(mesh, candidates, shown, options, least_inner_gain);
     if (inner.empty()) break;
     shown = what_is_left(mesh, *shown, inner, options.effective);
     views.insert(views.end(), inner.begin(), inner.end());
