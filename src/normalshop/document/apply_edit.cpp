@@ -79,7 +79,7 @@ void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge>
 /// Of several views of an edit; the chart that is told is the largest.
 void add(const EditReport& other, EditReport& report) {
   const auto pixels = [](const EditReport& r) {
-    return double{1} * r.chart_width * r.chart_height;
+    return std::int64_t{r.chart_width} * r.chart_height;
   };
   if (pixels(other) > pixels(report)) {
     report.chart_width = other.chart_width;

@@ -59,15 +59,21 @@ struct Source {
   MaskImage grazing;  ///< may be empty
 };
 
+/// The base surface's numbers, continued past its borders.
+SlopeImage base_slopes(const EditingChart& chart, EditMode mode) {
+  SlopeImage base(chart.grid.width(), chart.grid.height());
+  for_pixels(base.rect(),
+             [&](int x, int y) { base(x, y) = base_gradient(chart.base_normal(x, y), mode); });
+  extend(chart.weight, base);
+  return base;
+}
+
 Source make_source(const Edit& edit, const EditingChart& chart) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
-  const EditOperator& operation = *edit.operation;
-  const bool with_base = operation.reads_base() || operation.removes_finer(chart.grid.pixel) > 0.0F;
   const bool ignore = edit.details == DetailsRule::Ignore;
   const bool with_seen = ignore && edit.operation->picks();
   Source source{SlopeImage(width, height), {}, {}, MaskImage(width, height), {}};
-  if (with_base) source.base.resize(width, height);
   if (with_seen) source.seen.resize(width, height);
   parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
@@ -82,14 +88,13 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
           details = gradient_from_normal(chart.normal(x, y), base, edit.mode);
         }
         source.slopes(x, y) = ignore ? below : details;
-        if (with_base) source.base(x, y) = below;
         if (with_seen) source.seen(x, y) = details;
       }
     }
   });
   if (!ignore && edit.operation->reads()) source.grazing = limit_grazing(source.slopes);
   extend(source.validity, source.slopes);
-  if (with_base) extend(source.validity, source.base);
+  if (edit.operation->reads_base()) source.base = base_slopes(chart, edit.mode);
   return source;
 }
 
@@ -140,14 +145,6 @@ EditPlace find_place(const Edit& edit, const CoverView& cover, const Bounds& box
   return place;
 }
 
-/// The base surface's numbers where there is surface.
-SlopeImage base_slopes(const EditingChart& chart, EditMode mode) {
-  SlopeImage base(chart.grid.width(), chart.grid.height());
-  for_pixels(base.rect(),
-             [&](int x, int y) { base(x, y) = base_gradient(chart.base_normal(x, y), mode); });
-  return base;
-}
-
 /// Runs the operator and lets go of what push does not need.
 void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   EditingChart& chart = prepared.chart;
@@ -164,7 +161,7 @@ void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
   // What moves may come from beyond the border, and bicubic reads there need it.
   if (edit.operation->moves_colors() && !chart.albedo.empty()) extend(chart.weight, chart.albedo);
   input.colors = chart.albedo;
-  if (edit.operation->reads_base()) input.base = source.base;
+  input.base = source.base;
   input.validity = source.validity;
   prepared.result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
   const bool ignores = edit.details == DetailsRule::Ignore;
