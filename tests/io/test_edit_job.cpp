@@ -314,13 +314,19 @@ const char* const grab_right =
     R"({"operator": "warp", "view": "front", "options": {"kind": "grab", "radius": 0.4},
         "strokes": [[[0, 0], [0.15, 0]]]})";
 
-TEST(EditJob, ColoursThatMoveAreWritten) {
-  const TempFolder folder;
+/// The square with waves, and that file for its colours, which shows the disc.
+OpenOptions colored_square(const TempFolder& folder, const fs::path& colors, int size) {
   write_image(folder / "n.png", waves(64, 64, CodeType::U8));
-  write_image(folder / "c.png", red_disc(128));
+  write_image(colors, red_disc(size));
   OpenOptions options;
   options.model = write_model_file(folder, test::plane_grid(1), "n.png");
-  options.albedos = {(folder / "c.png").string()};
+  options.albedos = {colors.string()};
+  return options;
+}
+
+TEST(EditJob, ColoursThatMoveAreWritten) {
+  const TempFolder folder;
+  const OpenOptions options = colored_square(folder, folder / "c.png", 128);
   const EditJob job = run_edit_job(options, recipe(grab_right), folder / "out", {});
   const RawImage moved = read_image(folder / "out/map_color.png");
   const RawImage before = red_disc(128);
@@ -346,11 +352,7 @@ TEST(EditJob, ColoursThatMoveAreWritten) {
 
 TEST(EditJob, ColoursThatStayAreNotWritten) {
   const TempFolder folder;
-  write_image(folder / "n.png", waves(64, 64, CodeType::U8));
-  write_image(folder / "c.png", red_disc(64));
-  OpenOptions options;
-  options.model = write_model_file(folder, test::plane_grid(1), "n.png");
-  options.albedos = {(folder / "c.png").string()};
+  const OpenOptions options = colored_square(folder, folder / "c.png", 64);
   run_edit_job(options, recipe(pen(R"("front")", "[[[-0.2, 0], [0.2, 0]]]", 0.1)), folder / "out",
                {});
   EXPECT_FALSE(fs::exists(folder / "out/map_color.png"));
@@ -359,12 +361,8 @@ TEST(EditJob, ColoursThatStayAreNotWritten) {
 TEST(EditJob, ColoursAreNotWrittenOverThoseTheyCameFrom) {
   const TempFolder folder;
   fs::create_directories(folder / "out");
-  write_image(folder / "n.png", waves(64, 64, CodeType::U8));
-  write_image(folder / "out/map_color.png", red_disc(64));
+  const OpenOptions options = colored_square(folder, folder / "out/map_color.png", 64);
   const std::string before = read_file(folder / "out/map_color.png");
-  OpenOptions options;
-  options.model = write_model_file(folder, test::plane_grid(1), "n.png");
-  options.albedos = {(folder / "out/map_color.png").string()};
   EXPECT_THROW(run_edit_job(options, recipe(grab_right), folder / "out", {}), InvalidInput);
   EXPECT_EQ(read_file(folder / "out/map_color.png"), before);
   EXPECT_FALSE(fs::exists(folder / "out/map_normal.png"));
