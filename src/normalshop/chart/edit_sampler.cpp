@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/visible_weight.h"
@@ -10,15 +11,23 @@
 namespace normalshop {
 
 EditSampler::EditSampler(const EditingChart& chart, const ChartEdit& edit)
-    : edit_(edit), reach_(chart, edit.region, [this](int x, int y) { return acts(x, y); }) {
+    : EditSampler(chart, edit,
+                  EditReach(chart, edit.region, [&](int x, int y) { return acts(edit, x, y); })) {}
+
+EditSampler::EditSampler(const EditingChart& chart, const ChartEdit& edit, EditReach reach)
+    : edit_(edit), reach_(std::move(reach)) {
   [[maybe_unused]] const Rect all{0, 0, chart.grid.width(), chart.grid.height()};
   assert(chart.ids.depth.rect() == all && chart.weight.rect() == all);
   assert(edit.change.rect() == all && (edit.coverage.empty() || edit.coverage.rect() == all));
 }
 
-bool EditSampler::acts(int x, int y) const {
-  const Vec2f& c = edit_.change(x, y);
-  return c.x() != 0.0F || c.y() != 0.0F || (!edit_.coverage.empty() && edit_.coverage(x, y) > 0.0F);
+void EditSampler::update(const Rect& changed) {
+  reach_.update(changed, [this](int x, int y) { return acts(edit_, x, y); });
+}
+
+bool EditSampler::acts(const ChartEdit& edit, int x, int y) {
+  const Vec2f& c = edit.change(x, y);
+  return c.x() != 0.0F || c.y() != 0.0F || (!edit.coverage.empty() && edit.coverage(x, y) > 0.0F);
 }
 
 /// Bilinear, otherwise like read_change().
@@ -33,7 +42,6 @@ float EditSampler::coverage_at(float x, float y) const {
     const int yj = std::clamp(y0 + j, 0, coverage.height() - 1);
     for (int i = 0; i < 2; ++i) {
       const int xi = std::clamp(x0 + i, 0, coverage.width() - 1);
-      if (!reach_.region().contains(xi, yj)) continue;
       sum += (i == 0 ? 1.0F - fx : fx) * (j == 0 ? 1.0F - fy : fy) * coverage(xi, yj);
     }
   }
@@ -41,8 +49,11 @@ float EditSampler::coverage_at(float x, float y) const {
 }
 
 bool EditSampler::read(TexelBatch& batch) const {
-  if (!read_visible_weight(reach_, batch)) return false;
-  read_change(edit_.change, reach_.region(), batch);
+  return read_visible_weight(reach_, batch) && read_weighed(batch);
+}
+
+bool EditSampler::read_weighed(TexelBatch& batch) const {
+  read_change(edit_.change, edit_.change.rect(), batch);
   batch.covered.fill(0.0F);
   bool any = false;
   for (int i = 0; i < batch.count; ++i) {

@@ -11,6 +11,12 @@ namespace normalshop {
 class EditSampler {
  public:
   EditSampler(const EditingChart& chart, const ChartEdit& edit);
+  /// For an edit that grows: its region is the chart, and it does nothing before update().
+  static EditSampler growing(const EditingChart& chart, const ChartEdit& edit) {
+    return {chart, edit, EditReach(chart)};
+  }
+  /// The edit has changed at these pixels.
+  void update(const Rect& changed);
 
   const EditReach& reach() const { return reach_; }
   const ChartGrid& grid() const { return reach_.grid(); }
@@ -18,9 +24,12 @@ class EditSampler {
   /// Fills weight, change_x, change_y and covered of the batch's points. False, and not all is
   /// filled, when nothing happens at any of them.
   bool read(TexelBatch& batch) const;
+  /// The same of points whose weight is there already.
+  bool read_weighed(TexelBatch& batch) const;
 
  private:
-  bool acts(int x, int y) const;
+  EditSampler(const EditingChart& chart, const ChartEdit& edit, EditReach reach);
+  static bool acts(const ChartEdit& edit, int x, int y);
   float coverage_at(float x, float y) const;
 
   const ChartEdit& edit_;

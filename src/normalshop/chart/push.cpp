@@ -8,7 +8,7 @@ namespace {
 
 /// Stores every texel at once.
 struct DirectTarget {
-  static constexpr bool reads_facing = false;
+  static constexpr auto facing = NormalEditor::Facing::Left;
   NormalMap& normals;
   void put(int x, int y, const TexelWrite& write) { normals.set_normal(x, y, write.value); }
 };

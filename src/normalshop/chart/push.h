@@ -15,7 +15,7 @@ struct ChartEdit {
   EditMode mode = EditMode::View;
   SlopeView change;   ///< size of the chart
   MaskView coverage;  ///< 0 to 1; empty: 0 everywhere
-  Rect region;        ///< pixels outside change nothing
+  Rect region;        ///< outside, change and coverage are 0
 };
 
 struct PushResult {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "normalshop/chart/triangle_tiles.h"
 #include "normalshop/core/parallel.h"
-#include "normalshop/core/sample.h"
 
 namespace normalshop {
 
@@ -37,11 +37,7 @@ bool PushCandidates::may_change(const EditReach& reach, std::uint32_t triangle) 
   if (mesh_.texture_sets[triangle] != texture_set_) return false;
   const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
   const ChartGrid& grid = reach.grid();
-  const Vec3f& toward = grid.view.direction;
-  if (mesh_.normals[corner].dot(toward) <= 0.0F && mesh_.normals[corner + 1].dot(toward) <= 0.0F &&
-      mesh_.normals[corner + 2].dot(toward) <= 0.0F) {
-    return false;
-  }
+  if (faces_away(mesh_, triangle, grid.view.direction)) return false;
   const Vec3f a = grid.project(mesh_.position(corner));
   const Vec3f b = grid.project(mesh_.position(corner + 1));
   const Vec3f c = grid.project(mesh_.position(corner + 2));
@@ -51,34 +47,10 @@ bool PushCandidates::may_change(const EditReach& reach, std::uint32_t triangle) 
 }
 
 void PushCandidates::mark_tiles(std::uint32_t triangle) {
-  const Vec2f size(static_cast<float>(width_), static_cast<float>(height_));
-  const std::size_t corner = 3 * static_cast<std::size_t>(triangle);
-  const Vec2f a = mesh_.uvs[corner].cwiseProduct(size);
-  const Vec2f b = mesh_.uvs[corner + 1].cwiseProduct(size);
-  const Vec2f c = mesh_.uvs[corner + 2].cwiseProduct(size);
-  const Vec2f low = a.cwiseMin(b).cwiseMin(c);
-  const Vec2f high = a.cwiseMax(b).cwiseMax(c);
-  const auto wrap = [](int v, int n) { return ((v % n) + n) % n; };
-  // Whole maps further on come the same texels again.
-  const int x0 = floor_to_int(low.x());
-  const int y0 = floor_to_int(low.y());
-  const int x1 = std::min(floor_to_int(high.x()), x0 + width_);
-  const int y1 = std::min(floor_to_int(high.y()), y0 + height_);
-  const auto next = [](int v, int n, int w) {  // first texel of the next tile, or of the next map
-    return v + std::min(tile_side - w % tile_side, n - w);
-  };
-  for (int y = y0; y <= y1;) {
-    const int wy = wrap(y, height_);
-    for (int x = x0; x <= x1;) {
-      const int wx = wrap(x, width_);
-      // Several threads may mark one tile; the mark is the same.
-      std::atomic_ref(
-          tiles_[static_cast<std::size_t>(wy / tile_side * tile_columns_ + wx / tile_side)])
-          .store(1, std::memory_order_relaxed);
-      x = next(x, width_, wx);
-    }
-    y = next(y, height_, wy);
-  }
+  visit_tiles(mesh_, triangle, width_, height_, [&](int tile, const Rect&) {
+    // Several threads may mark one tile; the mark is the same.
+    std::atomic_ref(tiles_[static_cast<std::size_t>(tile)]).store(1, std::memory_order_relaxed);
+  });
 }
 
 std::vector<Rect> PushCandidates::tiles() const {

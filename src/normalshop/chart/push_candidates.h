@@ -16,8 +16,7 @@ class PushCandidates {
   PushCandidates(const Mesh& mesh, const EditReach& reach, std::uint32_t texture_set, int width,
                  int height);
 
-  bool contains(std::uint32_t triangle) const { return triangles_[triangle] != 0; }
-  /// The same as a function.
+  /// Tells whether a triangle is one of them.
   auto wanted() const {
     return [marks = triangles_.data()](std::uint32_t triangle) { return marks[triangle] != 0; };
   }

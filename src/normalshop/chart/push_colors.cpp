@@ -5,6 +5,7 @@
 
 #include "normalshop/chart/bicubic_change.h"
 #include "normalshop/chart/edit_reach.h"
+#include "normalshop/chart/push_candidates.h"
 #include "normalshop/chart/shared_texels.h"
 #include "normalshop/chart/visible_weight.h"
 #include "normalshop/core/for_pixels.h"
@@ -110,7 +111,7 @@ class SetColorPush {
 
   std::vector<TexelWrite> gutter_writes() const {
     return collect_gutter(
-        texels_, mesh_, sampler_.reach().grid(), candidates_,
+        texels_.gutter(), mesh_, sampler_.reach().grid(), candidates_.wanted(),
         [&](const auto& items, Cache&, TexelBatch& batch, std::vector<TexelWrite>& out) {
           if (sampler_.read(batch)) collect(items, batch, out);
         });
@@ -118,10 +119,10 @@ class SetColorPush {
 
   std::vector<TexelWrite> shared_writes() const {
     return collect_shared(
-        texels_, mesh_, sampler_.reach().grid(), candidates_,
+        texels_.shared(), texels_, mesh_, sampler_.reach().grid(), candidates_.wanted(),
         [&](const auto& items, Cache& triangles, TexelBatch& batch, std::vector<TexelWrite>& out) {
           if (!sampler_.read(batch)) return;
-          drop_lanes_of_owners(items, texels_, candidates_, triangles, sampler_, batch);
+          drop_lanes_of_owners(items, texels_, candidates_.wanted(), triangles, sampler_, batch);
           collect(items, batch, out);
         });
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "normalshop/chart/push_candidates.h"
 #include "normalshop/chart/texel_walk.h"
 
 /// Which of several triangles decides what a texel gets, private to floor 4.
@@ -13,10 +12,11 @@ inline SurfacePoint gutter_source(const GutterTexel& g) {
 }
 
 /// Takes the edit from the lanes of `batch` whose texel's owner has it with as large a weight:
-/// there the owner decides. Sampler: bool read(TexelBatch&) const.
-template <class Sampler>
+/// there the owner decides. wanted(triangle) tells which owners may have it at all. Sampler: bool
+/// read(TexelBatch&) const.
+template <class Wanted, class Sampler>
 void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, const TexelMap& texels,
-                          const PushCandidates& candidates, TriangleCache<PushTriangle>& triangles,
+                          const Wanted& wanted, TriangleCache<PushTriangle>& triangles,
                           const Sampler& sampler, TexelBatch& batch) {
   TexelBatch owners;
   PerLane<int> lanes;
@@ -24,7 +24,7 @@ void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, const TexelM
     const std::uint32_t index = items[static_cast<std::size_t>(i)]->texel;
     const auto [x, y] = texel_place(index, texels.width());
     const std::uint32_t owner = texels.owner()(x, y);
-    if (!batch.acts(i) || !candidates.contains(owner)) continue;
+    if (!batch.acts(i) || !wanted(owner)) continue;
     lanes[static_cast<std::size_t>(owners.count)] = i;
     add_texel(texels, owner, x, y, triangles, owners);
   }
@@ -37,14 +37,13 @@ void drop_lanes_of_owners(const PerLane<const SharedTexel*>& items, const TexelM
   }
 }
 
-/// collect_writes() of the gutter texels that candidates decide.
-template <class Edit>
-std::vector<TexelWrite> collect_gutter(const TexelMap& texels, const Mesh& mesh,
-                                       const ChartGrid& grid, const PushCandidates& candidates,
+/// collect_writes() of the gutter texels that wanted(triangle) triangles decide.
+template <class Wanted, class Edit>
+std::vector<TexelWrite> collect_gutter(const std::vector<GutterTexel>& items, const Mesh& mesh,
+                                       const ChartGrid& grid, const Wanted& wanted,
                                        const Edit& edit) {
   return collect_writes(
-      texels.gutter(), mesh, grid,
-      [&](const GutterTexel& g) { return candidates.contains(gutter_source(g).triangle); },
+      items, mesh, grid, [&](const GutterTexel& g) { return wanted(gutter_source(g).triangle); },
       [](const GutterTexel& g, TriangleCache<PushTriangle>& triangles, TexelBatch& batch) {
         const SurfacePoint p = gutter_source(g);
         batch.add_point(triangles.get(p.triangle), {1.0F, p.b1, p.b2});
@@ -52,14 +51,14 @@ std::vector<TexelWrite> collect_gutter(const TexelMap& texels, const Mesh& mesh,
       edit);
 }
 
-/// collect_writes() of the texels that candidates share with their owners.
-template <class Edit>
-std::vector<TexelWrite> collect_shared(const TexelMap& texels, const Mesh& mesh,
-                                       const ChartGrid& grid, const PushCandidates& candidates,
+/// collect_writes() of the texels that wanted(triangle) triangles share with their owners.
+template <class Wanted, class Edit>
+std::vector<TexelWrite> collect_shared(const std::vector<SharedTexel>& items,
+                                       const TexelMap& texels, const Mesh& mesh,
+                                       const ChartGrid& grid, const Wanted& wanted,
                                        const Edit& edit) {
   return collect_writes(
-      texels.shared(), mesh, grid,
-      [&](const SharedTexel& s) { return candidates.contains(s.triangle); },
+      items, mesh, grid, [&](const SharedTexel& s) { return wanted(s.triangle); },
       [&](const SharedTexel& s, TriangleCache<PushTriangle>& triangles, TexelBatch& batch) {
         const auto [x, y] = texel_place(s.texel, texels.width());
         add_texel(texels, s.triangle, x, y, triangles, batch);

@@ -2,6 +2,7 @@
 
 #include "normalshop/chart/cover.h"
 #include "normalshop/chart/set_push.h"
+#include "normalshop/core/normal_codes.h"
 
 namespace normalshop {
 
@@ -18,7 +19,7 @@ Vec3f unit_or_zero(const Vec3f& v) {
 }  // namespace
 
 struct SurfaceBlend::Target {
-  static constexpr bool reads_facing = true;
+  static constexpr auto facing = NormalEditor::Facing::Told;
   const NormalMap& normals;
   Tiles& tiles;
 

@@ -40,23 +40,23 @@ inline void fill_frames(const Mesh& mesh, const View& view, NormalSpace space,
   }
 }
 
-/// What the map holds at the lanes' texels, for apply().
+/// What the map holds at the lanes' texels, for apply(). Texels side by side are read in one go.
 inline void read_stored(const NormalMap& map, TexelLanes& lanes) {
-  TexelBatch& batch = lanes.batch;
-  const auto count = static_cast<std::size_t>(batch.count);
-  if (lanes.listed) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [x, y] = texel_place(lanes.texels[i], map.width());
-      batch.stored.set(static_cast<int>(i), map.vector(x, y));
-    }
-    return;
-  }
-  const std::uint32_t first = lanes.texels[0];
-  const auto [x, y] = texel_place(first, map.width());
   PerLane<Vec3f> row;
-  map.read_vectors(x, static_cast<int>(lanes.texels[count - 1] - first) + 1, y, row.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    batch.stored.set(static_cast<int>(i), row[lanes.texels[i] - first]);
+  for (int begin = 0; begin < lanes.batch.count;) {
+    const std::uint32_t first = lanes.texels[static_cast<std::size_t>(begin)];
+    const auto [x, y] = texel_place(first, map.width());
+    const int most = std::min(lanes.batch.count - begin, map.width() - x);
+    int count = 1;
+    while (count < most && lanes.texels[static_cast<std::size_t>(begin + count)] ==
+                               first + static_cast<std::uint32_t>(count)) {
+      ++count;
+    }
+    map.read_vectors(x, count, y, row.data());
+    for (int i = 0; i < count; ++i) {
+      lanes.batch.stored.set(begin + i, row[static_cast<std::size_t>(i)]);
+    }
+    begin += count;
   }
 }
 

@@ -21,15 +21,18 @@ constexpr std::size_t rows_per_task = 16;
 }  // namespace
 
 NormalMap::NormalMap(RawImage codes, const NormalConvention& convention)
-    : codes_(std::move(codes)), convention_(convention) {
-  if (codes_.channels() < (convention.two_channel ? 2 : 3)) {
+    : codes_(std::make_shared<const RawImage>(std::move(codes))),
+      width_(codes_->width()),
+      height_(codes_->height()),
+      convention_(convention) {
+  if (codes_->channels() < (convention.two_channel ? 2 : 3)) {
     throw InvalidInput(
         "a normal map needs 3 channels, or 2 when only x and y are stored; this has " +
-        std::to_string(codes_.channels()));
+        std::to_string(codes_->channels()));
   }
-  range_ = code_range(codes_.type(), convention_);
-  tile_columns_ = tiles_along(codes_.width());
-  const int tile_rows = tiles_along(codes_.height());
+  range_ = code_range(codes_->type(), convention_);
+  tile_columns_ = tiles_along(width_);
+  const int tile_rows = tiles_along(height_);
   tiles_.resize(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows));
 }
 
@@ -40,20 +43,13 @@ Vec3f NormalMap::with_coded_length(const Vec3f& n) const {
   return n / Vec3f(n.x() * per_scale, n.y() * per_scale, n.z()).norm();
 }
 
-NormalMap::NormalMap(const NormalMap& other)
-    : codes_(other.codes_),
-      convention_(other.convention_),
-      range_(other.range_),
-      tile_columns_(other.tile_columns_),
-      tiles_(other.tiles_.size()) {
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    if (other.tiles_[i]) tiles_[i] = std::make_unique<Tile>(*other.tiles_[i]);
-  }
+const std::shared_ptr<const RawImage>& NormalMap::no_codes() {
+  static const auto none = std::make_shared<const RawImage>();
+  return none;
 }
 
-NormalMap& NormalMap::operator=(const NormalMap& other) {
-  if (this != &other) *this = NormalMap(other);
-  return *this;
+std::shared_ptr<NormalMap::Tile> NormalMap::own_tile(const Tile* shared) {
+  return shared == nullptr ? std::make_shared<Tile>() : std::make_shared<Tile>(*shared);
 }
 
 const NormalMap::Tile* NormalMap::tile(int x, int y) const {
@@ -63,13 +59,13 @@ const NormalMap::Tile* NormalMap::tile(int x, int y) const {
 Vec3f NormalMap::vector(int x, int y) const {
   const Tile* t = tile(x, y);
   if (t != nullptr && t->edited[index_in_tile(x, y)]) return t->normals[index_in_tile(x, y)];
-  return codes::decode_texel(codes_, convention_, range_, x, y);
+  return codes::decode_texel(*codes_, convention_, range_, x, y);
 }
 
 Vec3f NormalMap::normal(int x, int y) const { return codes::direction_of(vector(x, y)); }
 
 void NormalMap::read_vectors(int x, int count, int y, Vec3f* vectors) const {
-  codes::decode_row(codes_, convention_, x, count, y, vectors);
+  codes::decode_row(*codes_, convention_, x, count, y, vectors);
   const int end = x + count;
   while (x < end) {
     const int next = std::min(end, (x / tile_size + 1) * tile_size);
@@ -89,8 +85,8 @@ Vec3f NormalMap::sample(const Vec2f& uv) const {
   const WrappedTaps tap(uv, width(), height());
   const bool one_tile = (tap.x0 ^ tap.x1) < tile_size && (tap.y0 ^ tap.y1) < tile_size;
   const bool plain = one_tile && tile(tap.x0, tap.y0) == nullptr && !convention_.two_channel;
-  if (plain && codes_.type() == CodeType::U8) return sample_codes<std::uint8_t>(tap);
-  if (plain && codes_.type() == CodeType::U16) return sample_codes<std::uint16_t>(tap);
+  if (plain && codes_->type() == CodeType::U8) return sample_codes<std::uint8_t>(tap);
+  if (plain && codes_->type() == CodeType::U16) return sample_codes<std::uint16_t>(tap);
   const Vec3f upper = vector(tap.x0, tap.y0) * (1.0F - tap.fx) + vector(tap.x1, tap.y0) * tap.fx;
   const Vec3f lower = vector(tap.x0, tap.y1) * (1.0F - tap.fx) + vector(tap.x1, tap.y1) * tap.fx;
   return upper * (1.0F - tap.fy) + lower * tap.fy;
@@ -99,9 +95,9 @@ Vec3f NormalMap::sample(const Vec2f& uv) const {
 /// Bilinear over unedited integer codes: the codes' mean decodes to the vectors' mean.
 template <class Code>
 Vec3f NormalMap::sample_codes(const WrappedTaps& tap) const {
-  const int channels = codes_.channels();
-  const Code* upper = codes_.row<Code>(tap.y0);
-  const Code* lower = codes_.row<Code>(tap.y1);
+  const int channels = codes_->channels();
+  const Code* upper = codes_->row<Code>(tap.y0);
+  const Code* lower = codes_->row<Code>(tap.y1);
   const int left = tap.x0 * channels;
   const int right = tap.x1 * channels;
   const float w11 = tap.fx * tap.fy;
@@ -142,7 +138,7 @@ void NormalMap::sample(const float* u, const float* v, int count, float* x, floa
                        float* z) const {
   if (count <= 0) return;
   if (!convention_.two_channel && !may_read_edits(u, v, count) &&
-      sample_bytes(codes_, nullptr, u, v, count, x, y, z)) {
+      sample_bytes(*codes_, nullptr, u, v, count, x, y, z)) {
     const float right = convention_.scale;
     const float up = convention_.green_down ? -right : right;
     for (int i = 0; i < count; ++i) {
@@ -158,6 +154,18 @@ void NormalMap::sample(const float* u, const float* v, int count, float* x, floa
     y[i] = n.y();
     z[i] = n.z();
   }
+}
+
+bool NormalMap::restore(int x, int y, const NormalMap& earlier) {
+  auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
+  const Tile* was = earlier.tile(x, y);
+  const std::size_t i = index_in_tile(x, y);
+  const bool was_edited = was != nullptr && was->edited[i];
+  if (t.get() == was || (!t->edited[i] && !was_edited)) return false;
+  if (t.use_count() != 1) t = own_tile(t.get());
+  t->edited[i] = was_edited;
+  if (was_edited) t->normals[i] = was->normals[i];
+  return true;
 }
 
 bool NormalMap::edited(int x, int y) const {
@@ -194,22 +202,22 @@ void NormalMap::encode_edits(int y, RawImage& out) const {
 }
 
 RawImage NormalMap::encode(CodeType type, const NormalConvention& convention) const {
-  const bool same = type == codes_.type() && convention == convention_;
+  const bool same = type == codes_->type() && convention == convention_;
   const int normal_channels = codes::normal_channels(convention);
-  RawImage out(width(), height(), std::max(codes_.channels(), normal_channels), type);
+  RawImage out(width(), height(), std::max(codes_->channels(), normal_channels), type);
   std::vector<int> columns(same ? 0 : static_cast<std::size_t>(width()));
   std::iota(columns.begin(), columns.end(), 0);
   const auto encode_rows = [&](std::size_t first, std::size_t last) {
     std::vector<Vec3f> vectors(columns.size());
     for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
       if (same) {
-        std::memcpy(out.row_data(y), codes_.row_data(y), codes_.row_bytes());
+        std::memcpy(out.row_data(y), codes_->row_data(y), codes_->row_bytes());
         encode_edits(y, out);
         continue;
       }
       read_vectors(y, vectors.data());
       codes::encode_texels(vectors.data(), width(), convention, out, 0, y);
-      codes::copy_other_channels(codes_, y, columns, out, y, normal_channels);
+      codes::copy_other_channels(*codes_, y, columns, out, y, normal_channels);
     }
   };
   parallel_for(static_cast<std::size_t>(height()), rows_per_task, encode_rows);

@@ -43,7 +43,9 @@ CodeRange code_range(CodeType type, const NormalConvention& convention);
 /// A map of normals: the codes as they were imported, never changed, and tiles of edited normals
 /// above them. A texel that no edit reached is exported with its imported code, bit for bit.
 ///
-/// Normals are given in the map's own space with y up. Texel (x, y) counts from the top left.
+/// Copies share codes and tiles until one of them edits a tile, so that a copy keeps the state of
+/// now for little. Normals are given in the map's own space with y up. Texel (x, y) counts from the
+/// top left.
 class NormalMap {
  public:
   static constexpr int tile_size = 64;
@@ -55,17 +57,12 @@ class NormalMap {
   NormalMap() = default;
   /// Codes with 2 to 4 channels (3 to 4 unless two_channel). Throws InvalidInput otherwise.
   NormalMap(RawImage codes, const NormalConvention& convention);
-  NormalMap(const NormalMap& other);
-  NormalMap& operator=(const NormalMap& other);
-  NormalMap(NormalMap&&) noexcept = default;
-  NormalMap& operator=(NormalMap&&) noexcept = default;
-  ~NormalMap() = default;
 
-  int width() const { return codes_.width(); }
-  int height() const { return codes_.height(); }
-  bool empty() const { return codes_.empty(); }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return width_ == 0; }
   const NormalConvention& convention() const { return convention_; }
-  const RawImage& codes() const { return codes_; }
+  const RawImage& codes() const { return *codes_; }
 
   /// Edited normal where there is one, else the decoded code; unit. Zero where the code holds no
   /// direction (not finite, shorter than 0.25 or longer than 1e18).
@@ -92,21 +89,26 @@ class NormalMap {
   /// Different tiles may be written by different threads at once. n is unit.
   void set_normal(int x, int y, const Vec3f& n) {
     auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
-    if (!t) t = std::make_unique<Tile>();
+    if (t.use_count() != 1) t = own_tile(t.get());
     t->normals[index_in_tile(x, y)] = convention_.scale == 1.0F ? n : with_coded_length(n);
     t->edited[index_in_tile(x, y)] = true;
   }
 
+  /// Makes the texel what it was in an earlier copy of this map. False where it cannot be anything
+  /// else. Threads as in set_normal().
+  bool restore(int x, int y, const NormalMap& earlier);
+
   /// Codes of the edited map. With the map's own type and convention every unedited texel keeps its
   /// code, and channels beyond the normal's (alpha) keep theirs always. The space is not converted.
   RawImage encode(CodeType type, const NormalConvention& convention) const;
-  RawImage encode() const { return encode(codes_.type(), convention_); }
+  RawImage encode() const { return encode(codes_->type(), convention_); }
 
  private:
   struct Tile {
     std::array<Vec3f, tile_size * tile_size> normals;
     std::bitset<tile_size * tile_size> edited;
   };
+  static std::shared_ptr<Tile> own_tile(const Tile* shared);
   Vec3f with_coded_length(const Vec3f& n) const;
   void encode_edits(int y, RawImage& out) const;
   template <class Code>
@@ -114,11 +116,15 @@ class NormalMap {
   const Tile* tile(int x, int y) const;
   bool may_read_edits(const float* u, const float* v, int count) const;
 
-  RawImage codes_;
+  static const std::shared_ptr<const RawImage>& no_codes();
+
+  std::shared_ptr<const RawImage> codes_ = no_codes();
+  int width_ = 0;
+  int height_ = 0;
   NormalConvention convention_;
   CodeRange range_{1.0F, 0.0F};
   int tile_columns_ = 0;
-  std::vector<std::unique_ptr<Tile>> tiles_;
+  std::vector<std::shared_ptr<Tile>> tiles_;
 };
 
 /// The map at another size: slopes (tangent space) or vectors (other spaces) resampled bicubically

@@ -1,0 +1,68 @@
+#include "normalshop/chart/live_push.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "normalshop/chart/live_set.h"
+#include "normalshop/core/parallel.h"
+
+namespace normalshop {
+
+struct LivePush::State {
+  State(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart, EditMode mode,
+        SlopeView change, MaskView coverage)
+      : edit{mode, change, coverage, chart.weight.rect()},
+        sampler(EditSampler::growing(chart, edit)),
+        everywhere(chart, chart.weight.rect(), [](int, int) { return true; }) {
+    for (std::size_t i = 0; i < storage.sets.size(); ++i) {
+      sets.push_back(std::make_unique<LiveSet>(mesh, storage.sets[i], static_cast<std::uint32_t>(i),
+                                               sampler, everywhere));
+    }
+  }
+
+  ChartEdit edit;
+  EditSampler sampler;
+  EditReach everywhere;
+  std::vector<std::unique_ptr<LiveSet>> sets;
+};
+
+LivePush::LivePush(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
+                   EditMode mode, SlopeView change, MaskView coverage)
+    : state_(std::make_unique<State>(mesh, storage, chart, mode, change, coverage)) {}
+
+LivePush::~LivePush() = default;
+
+const std::vector<MapTile>& LivePush::update(const Rect& changed, StorageAtlas& storage) {
+  constexpr int read_beyond = 3;  // pixels, by a bicubic kernel
+  tiles_.clear();
+  state_->sampler.update(changed);
+  const Rect near = intersect(grow(changed, read_beyond), state_->edit.region);
+  if (near.empty()) return tiles_;
+  for (std::size_t i = 0; i < state_->sets.size(); ++i) {
+    const int columns = NormalMap::tiles_along(storage.sets[i].normals.width());
+    for (const int tile : state_->sets[i]->update(near, storage.sets[i].normals)) {
+      tiles_.push_back({static_cast<std::uint32_t>(i), tile % columns, tile / columns});
+    }
+  }
+  return tiles_;
+}
+
+PushResult LivePush::result() const {
+  PushTally all;
+  for (const auto& set : state_->sets) all.add(set->tally());
+  return {all.visited, all.changed, degrees_of_turn(all.largest)};
+}
+
+void LivePush::restore(StorageAtlas& storage) const {
+  for (std::size_t i = 0; i < state_->sets.size(); ++i) {
+    storage.sets[i].normals = state_->sets[i]->before();
+  }
+}
+
+std::vector<const NormalMap*> LivePush::before() const {
+  std::vector<const NormalMap*> maps;
+  for (const auto& set : state_->sets) maps.push_back(&set->before());
+  return maps;
+}
+
+}  // namespace normalshop

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "normalshop/chart/normal_editor.h"
+#include "normalshop/chart/push_tally.h"
+#include "normalshop/chart/seen_texels.h"
+#include "normalshop/chart/tile_places.h"
+
+/// One texture set's part of a LivePush, private to floor 4.
+namespace normalshop {
+
+/// A tile whose part of the chart changes is edited whole, from the map as it was before the edit,
+/// so that it becomes what push() makes of it.
+class LiveSet {
+ public:
+  /// `sampler` and `everywhere` (each pixel of the chart acts) stay with the LivePush.
+  LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index, const EditSampler& sampler,
+          const EditReach& everywhere);
+
+  /// Stores what the edit makes of all tiles with texels in these pixels. Returns those that may
+  /// look different.
+  std::vector<int> update(const Rect& pixels, NormalMap& map);
+  PushTally tally() const;  ///< of the edit as it is
+  const NormalMap& before() const { return before_; }
+
+ private:
+  static constexpr int side = NormalMap::tile_size;
+  struct Tile {
+    bool found = false;
+    std::vector<SeenTexels> seen;  ///< by their owners; once found
+    PushTally tally;               ///< of the last update
+    bool touched = false;          ///< by the last update
+  };
+  void find_seen(const std::vector<int>& tiles);
+  void edit_tile(Tile& tile, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
+                 NormalMap& map);
+  template <class Item>
+  void restore(const std::vector<Item>& items, NormalMap& map);
+  void put(const std::vector<TexelWrite>& writes, NormalMap& map);
+  void put(Tile& tile, const TexelWrite& write, NormalMap& map);
+  void restore(Tile& tile, std::uint32_t texel, NormalMap& map);
+  Tile& tile_at(std::uint32_t texel);
+
+  NormalMap before_;
+  const EditReach& everywhere_;
+  NormalEditor editor_;
+  TilePlaces places_;
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace normalshop

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "normalshop/chart/grid.h"
+#include "normalshop/core/normal_map.h"
+#include "normalshop/surface/texel_map.h"
+
+/// Where the tiles of an atlas lie in a chart, private to floor 4.
+namespace normalshop {
+
+/// Boxes of chart pixels around what faces the viewer of each tile of one texture set: of the
+/// texels themselves, and of the surface points that its gutter and shared texels stand for.
+class TilePlaces {
+ public:
+  TilePlaces(const Mesh& mesh, const TexelMap& texels, std::uint32_t texture_set,
+             const ChartGrid& grid);
+
+  /// Tiles with anything in these pixels, rising.
+  std::vector<int> meeting(const Rect& pixels) const;
+  /// The gutter and shared texels of some tiles, by texel.
+  std::vector<GutterTexel> gutter_of(const std::vector<int>& tiles) const;
+  std::vector<SharedTexel> shared_of(const std::vector<int>& tiles) const;
+
+ private:
+  struct Box {
+    int x0;
+    int y0;
+    int x1;  ///< one past the end
+    int y1;
+  };
+  /// Entries of a list of texels by tile: those of tile t are order[first[t]] to
+  /// order[first[t + 1]].
+  struct ByTile {
+    std::vector<std::uint32_t> first;
+    std::vector<std::uint32_t> order;
+  };
+  template <class Item>
+  ByTile by_tile(const std::vector<Item>& items) const;
+  int tile_of(std::uint32_t texel) const;
+  void add_triangles();
+  void add_triangle(std::uint32_t triangle);
+  void add_point(int tile, const SurfacePoint& point);
+  void grow(int tile, const Vec2f& low, const Vec2f& high);
+
+  const Mesh& mesh_;
+  const TexelMap& texels_;
+  std::uint32_t texture_set_;
+  ChartGrid grid_;
+  int columns_;
+  std::vector<Box> boxes_;
+  ByTile gutter_;
+  ByTile shared_;
+};
+
+}  // namespace normalshop
