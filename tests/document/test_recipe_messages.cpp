@@ -70,7 +70,7 @@ TEST(RecipeMessages, AnEdit) {
   EXPECT_EQ(
       pen(good_pen, R"("colour": 1)"),
       "r.json: edits[0]: there is no field \"colour\"; it may be operator, view, mode, details, "
-      "strength, effective, options, strokes, mirror or comment");
+      "strength, effective, window, options, strokes, mirror or comment");
 }
 
 TEST(RecipeMessages, Options) {

@@ -33,17 +33,24 @@ std::vector<SeamEdge> seams_near(const Mesh& mesh, std::span<const SeamEdge> sea
   return near;
 }
 
-/// Pushes, and keeps both sides of the seams together: see SeamFit.
-template <class Push>
-PushResult push_and_fit(const Mesh& mesh, std::span<const SeamEdge> seams, float kept,
-                        StorageAtlas& storage, const Push& push_all) {
+/// The maps as they are, for little: they share what nobody edits.
+std::vector<NormalMap> copies(const StorageAtlas& storage) {
+  std::vector<NormalMap> maps;
+  for (const StorageSet& set : storage.sets) maps.push_back(set.normals);
+  return maps;
+}
+
+std::vector<const NormalMap*> pointers(const std::vector<NormalMap>& maps) {
+  std::vector<const NormalMap*> out;
+  for (const NormalMap& map : maps) out.push_back(&map);
+  return out;
+}
+
+void fit(const Mesh& mesh, std::span<const SeamEdge> seams, float kept, NormalMaps before,
+         StorageAtlas& storage) {
   std::vector<NormalMap*> maps;
   for (StorageSet& set : storage.sets) maps.push_back(&set.normals);
-  const std::vector<const NormalMap*> before(maps.begin(), maps.end());
-  const SeamFit fit(mesh, seams, before, kept);
-  const PushResult pushed = push_all();
-  fit.apply(maps);
-  return pushed;
+  SeamFit(mesh, seams, before, kept).apply(maps);
 }
 
 /// The normals, by whatever way the transfer says.
@@ -53,9 +60,9 @@ void push_normals(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> 
   EditReport& report = prepared.report;
   const ChartEdit change = prepared.change(edit.mode);
   if (report.transfer.update == Update::Gather) {
-    const std::vector<SeamEdge> near = seams_near(mesh, seams, chart.grid, change.region);
-    report.pushed =
-        push_and_fit(mesh, near, 1.0F, storage, [&] { return push(mesh, chart, change, storage); });
+    const std::vector<NormalMap> before = copies(storage);
+    report.pushed = push(mesh, chart, change, storage);
+    fit_seams(mesh, seams, chart.grid, change.region, pointers(before), storage);
     return;
   }
   report.pushed = update_storage(mesh, chart, change, report.transfer.update, storage);
@@ -130,13 +137,19 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
     add(prepared.report, report);
   }
   // What reaches all of the surface leaves no seam, either.
-  report.pushed = push_and_fit(mesh, seams, 1.0F - edit.strength, storage,
-                               [&] { return blend.write(storage); });
+  const std::vector<NormalMap> before = copies(storage);
+  report.pushed = blend.write(storage);
+  fit(mesh, seams, 1.0F - edit.strength, pointers(before), storage);
   report.times.push += watch.lap();
   return report;
 }
 
 }  // namespace
+
+void fit_seams(const Mesh& mesh, std::span<const SeamEdge> seams, const ChartGrid& grid,
+               const Rect& region, NormalMaps before, StorageAtlas& storage) {
+  fit(mesh, seams_near(mesh, seams, grid, region), 1.0F, before, storage);
+}
 
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
                       SurfaceCover& cover, StorageAtlas& storage, const TransferOptions& transfer) {

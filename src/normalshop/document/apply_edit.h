@@ -3,6 +3,7 @@
 #include <span>
 
 #include "normalshop/document/document.h"
+#include "normalshop/surface/seam_mismatch.h"
 
 namespace normalshop {
 
@@ -11,5 +12,10 @@ namespace normalshop {
 /// changes.
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
                       SurfaceCover& cover, StorageAtlas& storage, const TransferOptions& transfer);
+
+/// After the push of an edit in one view: keeps both sides of the seams together (SeamFit) that may
+/// lie among the texels which the edit in that region of the chart has changed.
+void fit_seams(const Mesh& mesh, std::span<const SeamEdge> seams, const ChartGrid& grid,
+               const Rect& region, NormalMaps before, StorageAtlas& storage);
 
 }  // namespace normalshop

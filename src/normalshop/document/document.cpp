@@ -1,7 +1,10 @@
 #include "normalshop/document/document.h"
 
+#include <cassert>
+
 #include "normalshop/core/error.h"
 #include "normalshop/document/apply_edit.h"
+#include "normalshop/document/live_edit.h"
 #include "normalshop/surface/tangents.h"
 #include "normalshop/surface/topology.h"
 
@@ -30,9 +33,16 @@ Document::Document(Mesh mesh, std::vector<Maps> maps, const Progress& progress)
 }
 
 EditReport Document::apply(const Edit& edit, const TransferOptions& transfer) {
+  assert(!live_);
   const EditReport report = apply_edit(edit, mesh_, seams_, cover_, storage_, transfer);
   log_.push_back(edit);
   return report;
+}
+
+std::unique_ptr<LiveEdit> Document::begin(Edit edit) {
+  assert(!live_);
+  // Its constructor is the document's alone.
+  return std::unique_ptr<LiveEdit>(new LiveEdit(*this, std::move(edit)));
 }
 
 }  // namespace normalshop

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "normalshop/chart/cover.h"
@@ -36,6 +37,8 @@ struct EditReport {
   std::size_t lost = 0;
 };
 
+class LiveEdit;
+
 /// A model, its storage atlas and the edits made to it. All changes go through apply(): the command
 /// line, the studio and scripts use this facade and nothing else.
 class Document {
@@ -60,12 +63,18 @@ class Document {
   /// surface that its view shows; the document is unchanged then.
   EditReport apply(const Edit& edit, const TransferOptions& transfer = {});
 
+  /// Opens an edit whose strokes are still to be drawn: see live_edit.h. Its window is the view.
+  /// Throws InvalidInput when the view shows no surface, and for the view "surface".
+  std::unique_ptr<LiveEdit> begin(Edit edit);
+
  private:
+  friend class LiveEdit;
   Mesh mesh_;
   StorageAtlas storage_;
   std::vector<SeamEdge> seams_;
   SurfaceCover cover_;
   std::vector<Edit> log_;
+  bool live_ = false;  // an edit is being drawn
 };
 
 }  // namespace normalshop

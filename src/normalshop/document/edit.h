@@ -43,6 +43,11 @@ struct EffectiveAngles {
   float zero = 75.0F;
 };
 
+/// How much of the view the editing chart shows, in pixels as fine as its finest texels: what the
+/// strokes reach, or all of it, so that the chart is there before the strokes are.
+enum class ChartWindow { Strokes, View };
+constexpr auto names_of(ChartWindow) { return std::array<std::string_view, 2>{"strokes", "view"}; }
+
 /// A plane of symmetry: where an object-space coordinate has a value.
 enum class Axis { X, Y, Z };
 constexpr auto names_of(Axis) { return std::array<std::string_view, 3>{"x", "y", "z"}; }
@@ -59,6 +64,7 @@ struct Edit {
   DetailsRule details = DetailsRule::Keep;
   float strength = 1.0F;
   EffectiveAngles effective;
+  ChartWindow window = ChartWindow::Strokes;
   std::vector<UnitStroke> strokes;
   std::optional<MirrorPlane> mirror;  ///< makes the edit's mirror image, too
   std::string path;  ///< where it was read from, for messages: "scar.json: edits[0]"

@@ -30,6 +30,11 @@ enum class StrokeEnds;
 /// The same around the smooth curves through the strokes' points (rgbn/pen.h).
 Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, StrokeEnds ends);
 
+/// Of strokes that have become others, as they were and as they are, what lies beyond the points
+/// that both have in common, and a little before that: where the smooth curves differ.
+std::vector<UnitStroke> changed_parts(const std::vector<UnitStroke>& before,
+                                      const std::vector<UnitStroke>& after);
+
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {
   SlopeView source;  ///< before the edit (with details ignored: the base surface); extended past
@@ -92,6 +97,8 @@ class EditOperator {
   virtual std::string_view asset_field() const { return {}; }
   /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
+  /// Does it make the same of a stroke wherever that goes on to, but for its extent()?
+  virtual bool follows_strokes() const { return false; }
   /// Object units read beyond the extent, in a chart whose pixels are that long.
   virtual float reach(float /*pixel*/) const { return 0.0F; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.

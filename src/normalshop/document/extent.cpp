@@ -20,6 +20,39 @@ Extent extent_of(const std::vector<UnitStroke>& strokes, float margin) {
   return e;
 }
 
+namespace {
+
+/// A smooth curve is another one up to two points before one that moves; its ends are drawn anew.
+constexpr std::size_t points_before = 4;
+
+bool same(const UnitPoint& a, const UnitPoint& b) {
+  return a.position == b.position && a.pressure == b.pressure;
+}
+
+void add_tail(const UnitStroke& stroke, std::size_t first, std::vector<UnitStroke>& parts) {
+  if (first >= stroke.size()) return;
+  parts.emplace_back(stroke.begin() + static_cast<std::ptrdiff_t>(first), stroke.end());
+}
+
+}  // namespace
+
+std::vector<UnitStroke> changed_parts(const std::vector<UnitStroke>& before,
+                                      const std::vector<UnitStroke>& after) {
+  const UnitStroke none;
+  std::vector<UnitStroke> parts;
+  for (std::size_t i = 0; i < std::max(before.size(), after.size()); ++i) {
+    const UnitStroke& a = i < before.size() ? before[i] : none;
+    const UnitStroke& b = i < after.size() ? after[i] : none;
+    const auto [at, end] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
+    if (at == a.end() && end == b.end()) continue;
+    const auto common = static_cast<std::size_t>(at - a.begin());
+    const std::size_t first = common > points_before ? common - points_before : 0;
+    add_tail(a, first, parts);
+    add_tail(b, first, parts);
+  }
+  return parts;
+}
+
 Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, StrokeEnds ends) {
   constexpr float fine = 2048.0F;  // pixels across the box in which curves are measured
   Extent e = extent_of(strokes, 0.0F);

@@ -301,8 +301,8 @@ EditReport ImageDocument::apply(const Edit& edit) {
     input.border = images_.border;
   if (edit.operation->reads_colors()) input.colors = part_of(images_.colors, placed.window);
   report.times.pull = watch.lap();
-  const OperatorResult result =
-      run_operator(placed.edit, input, placed.grid.width(), placed.grid.height());
+  OperatorResult result = empty_result(placed.grid.width(), placed.grid.height());
+  run_operator(placed.edit, input, result);
   report.times.operate = watch.lap();
   if (edit.strength > 0.0F) {
     const bool covers = edit.details == DetailsRule::Ignore;

@@ -36,6 +36,10 @@ Extent widened(const Extent& extent, float by) {
   return {extent.low - Vec2f::Constant(by), extent.high + Vec2f::Constant(by)};
 }
 
+Rect changeable_pixels(const ChartGrid& grid, const Extent& extent) {
+  return intersect(grow(pixel_rect(grid, extent), 2), Rect{0, 0, grid.width(), grid.height()});
+}
+
 OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlace& place) {
   OperatorInput input;
   input.strokes = to_pixels(edit.strokes, grid);
@@ -44,21 +48,21 @@ OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlac
   input.view_center = grid.to_pixel(0.5F * (place.view.low + place.view.high));
   input.view_width = (place.view.high.x() - place.view.low.x()) / grid.pixel;
   input.model = pixel_rect(grid, place.model);
-  input.region =
-      intersect(grow(pixel_rect(grid, place.extent), 2), Rect{0, 0, grid.width(), grid.height()});
+  input.region = changeable_pixels(grid, place.extent);
   return input;
 }
 
-OperatorResult run_operator(const Edit& edit, const OperatorInput& input, int width, int height) {
-  OperatorResult result{
-      SlopeImage(width, height, Vec2f(0.0F, 0.0F)), MaskImage(width, height, 0.0F), {}};
+OperatorResult empty_result(int width, int height) {
+  return {SlopeImage(width, height, Vec2f(0.0F, 0.0F)), MaskImage(width, height, 0.0F), {}};
+}
+
+void run_operator(const Edit& edit, const OperatorInput& input, OperatorResult& result) {
   try {
     result.region = edit.operation->run(input, result.change, result.coverage);
   } catch (const InvalidInput& error) {
     throw InvalidInput(edit.path + ": " + error.what());
   }
   scale(edit.strength, result);
-  return result;
 }
 
 }  // namespace normalshop

@@ -16,6 +16,9 @@ struct EditPlace {
 Extent intersect(const Extent& a, const Extent& b);
 Extent widened(const Extent& extent, float by);
 
+/// The pixels of a chart that an edit with that extent may change.
+Rect changeable_pixels(const ChartGrid& grid, const Extent& extent);
+
 /// All of the input but the images.
 OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlace& place);
 
@@ -25,6 +28,8 @@ struct OperatorResult {
   MaskImage coverage;
   Rect region;  ///< both are 0 outside
 };
-OperatorResult run_operator(const Edit& edit, const OperatorInput& input, int width, int height);
+OperatorResult empty_result(int width, int height);
+/// Fills `result`, which is 0 there, in input.region.
+void run_operator(const Edit& edit, const OperatorInput& input, OperatorResult& result);
 
 }  // namespace normalshop

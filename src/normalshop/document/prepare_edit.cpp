@@ -23,6 +23,11 @@ Extent view_extent(const View& view) {
           Vec2f(0.5F * view.width, 0.5F * view.height)};
 }
 
+CoverView whole(const View& view) {
+  const Extent all = view_extent(view);
+  return {view, all.low, all.high, nullptr};
+}
+
 /// A box in the view that holds the whole model.
 Extent model_extent(const Bounds& bounds, const View& view) {
   const Vec3f middle = view.to_chart(bounds.center() - view.center);
@@ -34,12 +39,12 @@ Extent model_extent(const Bounds& bounds, const View& view) {
 /// The window that the edit needs. There is nothing to read or write beyond the model, so that a
 /// huge brush or sigma costs no more than the whole model does; and rather than let the pixels grow
 /// coarser than the texels, an edit reads less far.
-ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place, float pixel) {
-  const Extent& extent = place.extent;
+ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, const Extent& model,
+                      float pixel) {
   const Vec2f spare =
       0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
   const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach(pixel));
-  const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, place.model);
+  const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, model);
   const Extent window = widened(read, 4.0F * pixel);
   try {
     return make_grid(view, pixel, window.low, window.high);
@@ -50,15 +55,6 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const EditPlace& place
   }
 }
 
-/// The two numbers that the operator sees, and where they are real.
-struct Source {
-  SlopeImage slopes;
-  SlopeImage base;  ///< may be empty
-  SlopeImage seen;  ///< empty: slopes
-  MaskImage validity;
-  MaskImage grazing;  ///< may be empty
-};
-
 /// The base surface's numbers, continued past its borders.
 SlopeImage base_slopes(const EditingChart& chart, EditMode mode) {
   SlopeImage base(chart.grid.width(), chart.grid.height());
@@ -68,12 +64,13 @@ SlopeImage base_slopes(const EditingChart& chart, EditMode mode) {
   return base;
 }
 
-Source make_source(const Edit& edit, const EditingChart& chart) {
+void read_details(const Edit& edit, const EditingChart& chart, ChartSource& source) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
   const bool ignore = edit.details == DetailsRule::Ignore;
   const bool with_seen = ignore && edit.operation->picks();
-  Source source{SlopeImage(width, height), {}, {}, MaskImage(width, height), {}};
+  source.slopes.resize(width, height);
+  source.validity.resize(width, height);
   if (with_seen) source.seen.resize(width, height);
   parallel_for(static_cast<std::size_t>(height), 32, [&](std::size_t a, std::size_t b) {
     for (int y = static_cast<int>(a); y < static_cast<int>(b); ++y) {
@@ -94,7 +91,17 @@ Source make_source(const Edit& edit, const EditingChart& chart) {
   });
   if (!ignore && edit.operation->reads()) source.grazing = limit_grazing(source.slopes);
   extend(source.validity, source.slopes);
-  if (edit.operation->reads_base()) source.base = base_slopes(chart, edit.mode);
+}
+
+ChartSource make_source(const Edit& edit, const EditingChart& chart) {
+  ChartSource source;
+  const bool ignore = edit.details == DetailsRule::Ignore;
+  const EditOperator& operation = *edit.operation;
+  if (operation.reads() || operation.picks()) read_details(edit, chart, source);
+  source.finer = ignore ? 0.0F : operation.removes_finer(chart.grid.pixel);
+  const bool turns = source.finer > 0.0F || !source.grazing.empty();
+  source.replaces = ignore || turns;
+  if (operation.reads_base() || turns) source.base = base_slopes(chart, edit.mode);
   return source;
 }
 
@@ -125,59 +132,76 @@ EditingChart build_chart(const Edit& edit, const CoverView& cover, const Mesh& m
   return chart;
 }
 
-ColorResult run_colors(const Edit& edit, const OperatorInput& input, ColorView before) {
-  ColorResult result{ColorImage(before.width(), before.height()), {}};
-  result.region = edit.operation->run_colors(input, result.change);
-  for_pixels(result.region, [&](int x, int y) {
-    result.change(x, y) = edit.strength * (result.change(x, y) - before(x, y));
-  });
-  return result;
-}
-
 EditPlace find_place(const Edit& edit, const CoverView& cover, const Bounds& box) {
   const View& view = cover.view;
   EditPlace place{view_extent(view), model_extent(box, view), edit.operation->extent(edit.strokes)};
   if (place.extent.empty()) place.extent = {cover.low, cover.high};
   place.extent = intersect(place.extent, widened(place.model, 1e-3F * box.diagonal()));
+  if (edit.window == ChartWindow::View) place.extent = intersect(place.extent, place.view);
   if (place.extent.empty()) {
     fail_off_surface(edit.path + (edit.strokes.empty() ? ".view" : ".strokes"), place.model);
   }
   return place;
 }
 
-/// Runs the operator and lets go of what push does not need.
-void operate(const Edit& edit, const EditPlace& place, PreparedEdit& prepared) {
-  EditingChart& chart = prepared.chart;
-  OperatorInput input = make_input(edit, chart.grid, place);
-  check_on_surface(edit, input.strokes, chart, input.region, place.model);
-  Source source;
-  if (edit.operation->reads() || edit.operation->picks()) source = make_source(edit, chart);
-  const bool gather = prepared.report.transfer.update == Update::Gather;
-  if (gather) chart.normal = {};
-  if (edit.operation->reads()) input.source = source.slopes;
-  if (edit.operation->picks()) {
-    input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
+/// Reads what the operator needs, and lets go of the rest.
+void open_source(const Edit& edit, OpenChart& open) {
+  EditingChart& chart = open.chart;
+  open.source = make_source(edit, chart);
+  if (open.report.transfer.update == Update::Gather) {
+    chart.normal = {};
+    chart.base_normal = {};
   }
   // What moves may come from beyond the border, and bicubic reads there need it.
   if (edit.operation->moves_colors() && !chart.albedo.empty()) extend(chart.weight, chart.albedo);
-  input.colors = chart.albedo;
-  input.base = source.base;
-  input.validity = source.validity;
-  prepared.result = run_operator(edit, input, chart.grid.width(), chart.grid.height());
-  const bool ignores = edit.details == DetailsRule::Ignore;
-  const float finer = ignores ? 0.0F : edit.operation->removes_finer(chart.grid.pixel);
-  const bool turns = finer > 0.0F || !source.grazing.empty();
-  prepared.replaces = ignores || turns;
-  if (turns) {
-    const SlopeImage base =
-        source.base.empty() ? base_slopes(chart, edit.mode) : std::move(source.base);
-    replace_details(source.grazing, finer, source.slopes, base, prepared.result);
-  }
-  if (edit.operation->moves_colors() && !chart.albedo.empty()) {
-    prepared.colors = run_colors(edit, input, chart.albedo);
-  }
-  if (gather) chart.base_normal = {};
+}
+
+OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                     const StorageAtlas& storage, const TransferOptions& transfer) {
+  Stopwatch watch;
+  const Bounds box = bounds(mesh);
+  const View& view = cover.view;
+  check_near_view(edit, view);
+  OpenChart open;
+  open.place = find_place(edit, cover, box);
+  const Extent shown = edit.window == ChartWindow::View
+                           ? intersect(open.place.view, open.place.model)
+                           : open.place.extent;
+  const CountedTexels counted =
+      edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
+  const float texel = texel_pixel_size(mesh, storage, view, shown.low, shown.high, counted);
+  open.chart = build_chart(edit, cover, mesh, storage,
+                           choose_grid(edit, view, shown, open.place.model, texel), box.diagonal(),
+                           transfer);
+  const ChartGrid& grid = open.chart.grid;
+  EditReport& report = open.report;
+  report.transfer = transfer;
+  report.views = 1;
+  report.chart_width = grid.width();
+  report.chart_height = grid.height();
+  report.pixel = grid.pixel;
+  report.coarser_than_texels = grid.pixel > 1.01F * texel;
+  report.times.pull = watch.lap();
+  open_source(edit, open);
+  report.times.operate = watch.lap();
+  return open;
+}
+
+PreparedEdit finish(const Edit& edit, OpenChart open) {
+  Stopwatch watch;
+  const OperatorInput input = operator_input(edit, open);
+  EditingChart& chart = open.chart;
+  check_on_surface(edit, input.strokes, chart, input.region, open.place.model);
+  PreparedEdit prepared;
+  prepared.result = empty_result(chart.grid.width(), chart.grid.height());
+  operate(edit, open, input, prepared.result);
+  prepared.replaces = open.source.replaces;
+  prepared.colors = operate_on_colors(edit, open, input);
   chart.albedo = {};
+  prepared.chart = std::move(chart);
+  prepared.report = open.report;
+  prepared.report.times.operate += watch.lap();
+  return prepared;
 }
 
 }  // namespace
@@ -191,38 +215,53 @@ EffectiveOptions effective_options(const EffectiveAngles& angles, float model_si
   return options;
 }
 
+OpenChart open_chart(const Edit& edit, const View& view, const Mesh& mesh,
+                     const StorageAtlas& storage, const TransferOptions& transfer) {
+  return open_chart(edit, whole(view), mesh, storage, transfer);
+}
+
+OperatorInput operator_input(const Edit& edit, const OpenChart& open) {
+  OperatorInput input = make_input(edit, open.chart.grid, open.place);
+  const ChartSource& source = open.source;
+  const EditOperator& operation = *edit.operation;
+  if (operation.reads()) input.source = source.slopes;
+  if (operation.picks()) {
+    input.seen = source.seen.empty() ? source.slopes.view() : source.seen.view();
+  }
+  if (operation.reads_base()) input.base = source.base;
+  input.colors = open.chart.albedo;
+  input.validity = source.validity;
+  return input;
+}
+
+void operate(const Edit& edit, const OpenChart& open, const OperatorInput& input,
+             OperatorResult& result) {
+  run_operator(edit, input, result);
+  const ChartSource& source = open.source;
+  if (source.finer > 0.0F || !source.grazing.empty()) {
+    replace_details(source.grazing, source.finer, source.slopes, source.base, result);
+  }
+}
+
+ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const OperatorInput& input) {
+  const ColorView before = open.chart.albedo;
+  if (!edit.operation->moves_colors() || before.empty()) return {};
+  ColorResult result{ColorImage(before.width(), before.height()), {}};
+  result.region = edit.operation->run_colors(input, result.change);
+  for_pixels(result.region, [&](int x, int y) {
+    result.change(x, y) = edit.strength * (result.change(x, y) - before(x, y));
+  });
+  return result;
+}
+
 PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& mesh,
                           const StorageAtlas& storage, const TransferOptions& transfer) {
-  Stopwatch watch;
-  const Bounds box = bounds(mesh);
-  const View& view = cover.view;
-  check_near_view(edit, view);
-  const EditPlace place = find_place(edit, cover, box);
-  const CountedTexels counted =
-      edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
-  const float texel =
-      texel_pixel_size(mesh, storage, view, place.extent.low, place.extent.high, counted);
-  PreparedEdit prepared;
-  prepared.report.transfer = transfer;
-  prepared.chart = build_chart(edit, cover, mesh, storage, choose_grid(edit, view, place, texel),
-                               box.diagonal(), transfer);
-  EditReport& report = prepared.report;
-  const ChartGrid& grid = prepared.chart.grid;
-  report.views = 1;
-  report.chart_width = grid.width();
-  report.chart_height = grid.height();
-  report.pixel = grid.pixel;
-  report.coarser_than_texels = grid.pixel > 1.01F * texel;
-  report.times.pull = watch.lap();
-  operate(edit, place, prepared);
-  report.times.operate = watch.lap();
-  return prepared;
+  return finish(edit, open_chart(edit, cover, mesh, storage, transfer));
 }
 
 PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
                           const StorageAtlas& storage, const TransferOptions& transfer) {
-  const Extent all = view_extent(view);
-  return prepare_edit(edit, CoverView{view, all.low, all.high, nullptr}, mesh, storage, transfer);
+  return prepare_edit(edit, whole(view), mesh, storage, transfer);
 }
 
 }  // namespace normalshop

@@ -12,6 +12,36 @@ struct ColorResult {
   Rect region;
 };
 
+/// The two numbers that an operator sees, and where they are real.
+struct ChartSource {
+  SlopeImage slopes;
+  SlopeImage base;  ///< empty unless needed
+  SlopeImage seen;  ///< empty: slopes
+  MaskImage validity;
+  MaskImage grazing;      ///< may be empty
+  float finer = 0.0F;     ///< EditOperator::removes_finer()
+  bool replaces = false;  ///< the result's coverage counts
+};
+
+/// A view's chart for an edit: pulled, and what the operator reads of it.
+struct OpenChart {
+  EditingChart chart;
+  EditPlace place;
+  ChartSource source;
+  EditReport report;
+};
+
+/// Throws InvalidInput, naming the field, for what does not fit the surface that the view shows.
+OpenChart open_chart(const Edit& edit, const View& view, const Mesh& mesh,
+                     const StorageAtlas& storage, const TransferOptions& transfer = {});
+/// All that the operator gets to see.
+OperatorInput operator_input(const Edit& edit, const OpenChart& open);
+/// Fills the result, which is 0 there, in input.region.
+void operate(const Edit& edit, const OpenChart& open, const OperatorInput& input,
+             OperatorResult& result);
+/// What becomes of the chart's colours, all of them; of operators that move colours.
+ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const OperatorInput& input);
+
 /// An edit in one view before its push: pulled and operated on, nothing stored.
 struct PreparedEdit {
   EditingChart chart;  ///< what the update needs
@@ -27,7 +57,7 @@ struct PreparedEdit {
   }
 };
 
-/// Throws InvalidInput, naming the field, for what does not fit the surface that the view shows.
+/// Throws as open_chart().
 PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
                           const StorageAtlas& storage, const TransferOptions& transfer = {});
 /// An edit of the whole view, made in its part and on what it shows of the mesh.

@@ -143,8 +143,8 @@ void check_for_surface(const Edit& edit, const FieldReader& reader) {
 }
 
 Edit read_edit(const FieldReader& reader, Assets& assets) {
-  reader.only({"operator", "view", "mode", "details", "strength", "effective", "options", "strokes",
-               "mirror", "comment"});
+  reader.only({"operator", "view", "mode", "details", "strength", "effective", "window", "options",
+               "strokes", "mirror", "comment"});
   Edit edit;
   edit.path = reader.path();
   edit.operation = read_operator(reader, assets);
@@ -162,6 +162,10 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
     edit.strength = static_cast<float>(reader.required("strength").number(0.0, 1.0));
   }
   if (reader.has("effective")) edit.effective = read_effective(reader.required("effective"));
+  if (reader.has("window")) {
+    edit.window =
+        static_cast<ChartWindow>(reader.required("window").one_of(names_list<ChartWindow>()));
+  }
   if (reader.has("strokes")) edit.strokes = read_strokes(reader.required("strokes"));
   if (reader.has("mirror")) edit.mirror = read_mirror(reader.required("mirror"));
   if (std::holds_alternative<SurfaceView>(edit.view)) {
@@ -239,6 +243,7 @@ Value to_value(const Recipe& recipe) {
         {"details", name_of(edit.details)},
         {"strength", edit.strength},
         {"effective", Value::Object{{"full", edit.effective.full}, {"zero", edit.effective.zero}}},
+        {"window", name_of(edit.window)},
         {"options", edit.operation->options()}};
     if (!edit.strokes.empty()) fields.emplace_back("strokes", strokes_value(edit.strokes));
     if (edit.mirror) {

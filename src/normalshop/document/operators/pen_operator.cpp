@@ -24,6 +24,8 @@ class PenOperator : public EditOperator {
     return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
   }
 
+  bool follows_strokes() const override { return !options_.closed && options_.taper == 0.0F; }
+
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
     if (strokes.empty()) {

@@ -1,0 +1,156 @@
+#include "normalshop/document/live_edit.h"
+
+#include <cassert>
+
+#include "normalshop/chart/push_colors.h"
+#include "normalshop/core/error.h"
+#include "normalshop/core/for_pixels.h"
+#include "normalshop/core/stopwatch.h"
+#include "normalshop/document/apply_edit.h"
+#include "normalshop/document/prepare_edit.h"
+#include "normalshop/document/surface_check.h"
+#include "normalshop/surface/seam_fit.h"
+
+namespace normalshop {
+
+namespace {
+
+View one_view(const Edit& edit, const Mesh& mesh) {
+  if (std::holds_alternative<SurfaceView>(edit.view)) {
+    throw InvalidInput(edit.path +
+                       ".view must be one view, not \"surface\", where strokes are drawn");
+  }
+  return resolve(edit.view, mesh);
+}
+
+Edit with_window(Edit edit) {
+  edit.window = ChartWindow::View;
+  return edit;
+}
+
+}  // namespace
+
+struct LiveEdit::State {
+  State(Document& owner, Edit begun)
+      : document(owner),
+        edit(with_window(std::move(begun))),
+        view(one_view(edit, owner.mesh())),
+        open(open_chart(edit, view, owner.mesh(), owner.storage())),
+        result(empty_result(open.chart.grid.width(), open.chart.grid.height())),
+        push(owner.mesh(), owner.storage(), open.chart, edit.mode, result.change,
+             open.source.replaces ? result.coverage.view() : MaskView()) {}
+
+  Document& document;
+  Edit edit;
+  View view;
+  OpenChart open;
+  OperatorResult result;
+  LivePush push;
+};
+
+LiveEdit::LiveEdit(Document& document, Edit edit)
+    : state_(std::make_unique<State>(document, std::move(edit))) {
+  document.live_ = true;
+}
+
+LiveEdit::~LiveEdit() { cancel(); }
+
+const Edit& LiveEdit::edit() const { return state_->edit; }
+
+const ChartGrid& LiveEdit::grid() const { return state_->open.chart.grid; }
+
+/// Where strokes that have taken the place of others may have changed something.
+Rect LiveEdit::changed_region(const std::vector<UnitStroke>& before) const {
+  const EditOperator& operation = *state_->edit.operation;
+  const std::vector<UnitStroke>& after = state_->edit.strokes;
+  std::vector<UnitStroke> parts = changed_parts(before, after);
+  if (parts.empty()) return {};
+  if (!operation.follows_strokes()) {
+    parts = before;
+    parts.insert(parts.end(), after.begin(), after.end());
+  }
+  Extent extent = operation.extent(parts);
+  const EditPlace& place = state_->open.place;
+  if (extent.empty()) extent = place.view;
+  return changeable_pixels(state_->open.chart.grid, intersect(extent, place.view));
+}
+
+/// Makes the result in a region anew.
+void LiveEdit::redraw(const Rect& region) {
+  OperatorResult& result = state_->result;
+  for_pixels(region, [&](int x, int y) {
+    result.change(x, y) = Vec2f(0.0F, 0.0F);
+    result.coverage(x, y) = 0.0F;
+  });
+  if (state_->edit.strokes.empty()) return;
+  OperatorInput input = operator_input(state_->edit, state_->open);
+  input.region = region;
+  operate(state_->edit, state_->open, input, result);
+}
+
+const std::vector<MapTile>& LiveEdit::draw(std::vector<UnitStroke> strokes) {
+  Edit& edit = state_->edit;
+  edit.operation->check_strokes(strokes, edit.path + ".strokes");
+  std::swap(edit.strokes, strokes);
+  const Rect region = changed_region(strokes);
+  if (region.empty()) return none_;
+  Stopwatch watch;
+  try {
+    check_near_view(edit, state_->view);
+    redraw(region);
+  } catch (const InvalidInput&) {
+    std::swap(edit.strokes, strokes);
+    redraw(region);
+    throw;
+  }
+  EditTimes& times = state_->open.report.times;
+  times.operate += watch.lap();
+  const std::vector<MapTile>& tiles = state_->push.update(region, state_->document.storage_);
+  times.push += watch.lap();
+  return tiles;
+}
+
+EditReport LiveEdit::finish() {
+  State& state = *state_;
+  Document& document = state.document;
+  if (state.edit.mirror || state.edit.strokes.empty()) {
+    const Edit edit = state.edit;
+    cancel();
+    return document.apply(edit);
+  }
+  const OpenChart& open = state.open;
+  Stopwatch watch;
+  EditReport report = open.report;
+  try {
+    const OperatorInput input = operator_input(state.edit, open);
+    const Rect region = changed_region({});
+    check_on_surface(state.edit, input.strokes, open.chart, region, open.place.model);
+    const ColorResult colors = operate_on_colors(state.edit, open, input);
+    report.times.operate += watch.lap();
+    fit_seams(document.mesh_, document.seams_, open.chart.grid, region, state.push.before(),
+              document.storage_);
+    if (!colors.change.empty()) {
+      report.colors_changed =
+          push_colors(document.mesh_, open.chart, {colors.change, colors.region}, document.storage_)
+              .changed;
+    }
+  } catch (...) {
+    cancel();
+    throw;
+  }
+  report.pushed = state.push.result();
+  report.times.push += watch.lap();
+  document.log_.push_back(state.edit);
+  document.live_ = false;
+  state_.reset();
+  return report;
+}
+
+void LiveEdit::cancel() {
+  if (!state_) return;
+  state_->push.restore(state_->document.storage_);
+  state_->document.live_ = false;
+  state_.reset();
+}
+
+}  // namespace normalshop
