@@ -101,8 +101,9 @@ TEST(LivePush, is_after_every_dab_what_a_push_of_all_is) {
         EXPECT_EQ(differing(live, whole), 0) << c.name << ", dab " << i;
       }
       EXPECT_GT(batch.changed, 100U) << c.name;
-      EXPECT_EQ(pushed.result().changed, batch.changed) << c.name;
-      EXPECT_EQ(pushed.result().largest_change, batch.largest_change) << c.name;
+      EXPECT_EQ(pushed.result(live).changed, batch.changed) << c.name;
+      EXPECT_NEAR(pushed.result(live).largest_change, batch.largest_change, 0.3F)
+          << c.name << ": a push grows gutter texels anew before it turns them";
       pushed.restore(live);
       EXPECT_EQ(differing(live, c.storage), 0) << c.name;
     }

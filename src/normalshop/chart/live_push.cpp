@@ -1,7 +1,6 @@
 #include "normalshop/chart/live_push.h"
 
 #include <algorithm>
-#include <mutex>
 
 #include "normalshop/chart/live_set.h"
 #include "normalshop/core/parallel.h"
@@ -47,9 +46,11 @@ const std::vector<MapTile>& LivePush::update(const Rect& changed, StorageAtlas& 
   return tiles_;
 }
 
-PushResult LivePush::result() const {
+PushResult LivePush::result(const StorageAtlas& storage) const {
   PushTally all;
-  for (const auto& set : state_->sets) all.add(set->tally());
+  for (std::size_t i = 0; i < state_->sets.size(); ++i) {
+    all.add(state_->sets[i]->tally(storage.sets[i].normals));
+  }
   return {all.visited, all.changed, degrees_of_turn(all.largest)};
 }
 

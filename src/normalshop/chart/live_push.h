@@ -17,9 +17,9 @@ struct MapTile {
 };
 
 /// Pushes an edit again and again while it grows, a stroke under the pointer: what push() would
-/// store of the whole edit, bit for bit, at the price of what has changed. That is the tiles whose
-/// texels the changed pixels show; which these are is found once for a chart, and where their
-/// texels lie in it when they are first asked for.
+/// store of the whole edit, bit for bit, at the price of what has changed: the texels that the
+/// changed pixels show. Which tiles hold these is found once for a chart, and where a tile's texels
+/// lie in it when they are first asked for.
 ///
 /// Source: thesis 5.5 (selective update), with tiles of the atlas in place of pixels.
 class LivePush {
@@ -35,8 +35,9 @@ class LivePush {
   /// Stores what the edit has become, given that since the last time change and coverage are
   /// different in these pixels only. Returns the tiles that may look different, by set and row.
   const std::vector<MapTile>& update(const Rect& changed, StorageAtlas& storage);
-  /// Of all updates together. `visited` counts a texel once for each update that came to it.
-  PushResult result() const;
+  /// Of all updates together, given what they stored: `visited` counts a texel once for each update
+  /// that came to it, `largest_change` is from what the maps held before.
+  PushResult result(const StorageAtlas& storage) const;
   /// Takes the edit back.
   void restore(StorageAtlas& storage) const;
   /// The maps before the edit, by texture set.

@@ -1,5 +1,7 @@
 #include "normalshop/chart/live_set.h"
 
+#include <algorithm>
+
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
@@ -25,19 +27,15 @@ std::vector<int> LiveSet::update(const Rect& pixels, NormalMap& map) {
   find_seen(tiles);
   const std::vector<SharedTexel> shared = places_.shared_of(tiles);
   const std::vector<TexelWrite> shared_writes = editor_.shared_writes(shared, all_triangles);
-  const std::vector<GutterTexel> gutter = places_.gutter_of(tiles);
+  const std::vector<GutterTexel> gutter = places_.gutter_of(tiles, pixels);
   const std::vector<TexelWrite> gutter_writes = editor_.gutter_writes(gutter, all_triangles);
-  for (const int t : tiles) {
-    Tile& tile = tiles_[static_cast<std::size_t>(t)];
-    tile.tally = {};
-    tile.touched = false;
-  }
+  for (const int t : tiles) tiles_[static_cast<std::size_t>(t)].touched = false;
   restore(shared, map);
   restore(gutter, map);
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     TexelLanes lanes;
     for (std::size_t i = begin; i < end; ++i) {
-      edit_tile(tiles_[static_cast<std::size_t>(tiles[i])], shared_writes, lanes, map);
+      edit_tile(tiles[i], pixels, shared_writes, lanes, map);
     }
   });
   put(shared_writes, map);
@@ -66,12 +64,15 @@ void LiveSet::find_seen(const std::vector<int>& tiles) {
   });
 }
 
-/// All of a tile's texels by their owners: those on which the edit does not act become what they
-/// were.
-void LiveSet::edit_tile(Tile& tile, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
-                        NormalMap& map) {
+/// The tile's texels by their owners. Those on which the edit does not act become what they were.
+void LiveSet::edit_tile(int index, const Rect& pixels, const std::vector<TexelWrite>& shared,
+                        TexelLanes& lanes, NormalMap& map) {
+  Tile& tile = tiles_[static_cast<std::size_t>(index)];
+  // What shared texels become may depend on pixels far away.
+  const bool whole = places_.shares(index);
   for (const SeenTexels& seen : tile.seen) {
-    tile.tally.visited += static_cast<std::size_t>(seen.count);
+    if (!whole && !seen.meets(pixels)) continue;
+    tile.visited += static_cast<std::size_t>(seen.count);
     const bool acts = seen.load(editor_.sampler().reach(), lanes) && editor_.edit_weighed(lanes);
     for (int i = 0; i < seen.count; ++i) {
       const std::uint32_t texel = seen.texels[static_cast<std::size_t>(i)];
@@ -96,13 +97,13 @@ void LiveSet::put(const std::vector<TexelWrite>& writes, NormalMap& map) {
 void LiveSet::put(Tile& tile, const TexelWrite& write, NormalMap& map) {
   const auto [x, y] = texel_place(write.texel, before_.width());
   map.set_normal(x, y, write.value);
-  tile.tally.largest = std::max(tile.tally.largest, write.turn);
-  ++tile.tally.changed;
+  tile.changed.set(NormalMap::index_in_tile(x, y));
   tile.touched = true;
 }
 
 void LiveSet::restore(Tile& tile, std::uint32_t texel, NormalMap& map) {
   const auto [x, y] = texel_place(texel, before_.width());
+  tile.changed.reset(NormalMap::index_in_tile(x, y));
   if (map.restore(x, y, before_)) tile.touched = true;
 }
 
@@ -112,9 +113,22 @@ LiveSet::Tile& LiveSet::tile_at(std::uint32_t texel) {
                                          x / side)];
 }
 
-PushTally LiveSet::tally() const {
+PushTally LiveSet::tally(const NormalMap& map) const {
   PushTally all;
-  for (const Tile& tile : tiles_) all.add(tile.tally);
+  const int columns = NormalMap::tiles_along(before_.width());
+  for (std::size_t t = 0; t < tiles_.size(); ++t) {
+    const Tile& tile = tiles_[t];
+    all.visited += tile.visited;
+    all.changed += tile.changed.count();
+    if (tile.changed.none()) continue;
+    for (int i = 0; i < side * side; ++i) {
+      if (!tile.changed[static_cast<std::size_t>(i)]) continue;
+      const int x = static_cast<int>(t) % columns * side + i % side;
+      const int y = static_cast<int>(t) / columns * side + i / side;
+      const Vec3f moved = map.normal(x, y).normalized() - before_.normal(x, y).normalized();
+      all.largest = std::max(all.largest, 0.5F * moved.squaredNorm());
+    }
+  }
   return all;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <bitset>
 #include <cstdint>
 #include <vector>
 
@@ -12,18 +12,19 @@
 /// One texture set's part of a LivePush, private to floor 4.
 namespace normalshop {
 
-/// A tile whose part of the chart changes is edited whole, from the map as it was before the edit,
-/// so that it becomes what push() makes of it.
+/// Texels whose part of the chart changes are edited anew, from the map as it was before the edit,
+/// so that they become what push() makes of them.
 class LiveSet {
  public:
   /// `sampler` and `everywhere` (each pixel of the chart acts) stay with the LivePush.
   LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index, const EditSampler& sampler,
           const EditReach& everywhere);
 
-  /// Stores what the edit makes of all tiles with texels in these pixels. Returns those that may
-  /// look different.
+  /// Stores what the edit makes of all texels in these pixels. Returns the tiles that may look
+  /// different.
   std::vector<int> update(const Rect& pixels, NormalMap& map);
-  PushTally tally() const;  ///< of the edit as it is
+  /// Of all updates: what they came to, and how `map` differs from before.
+  PushTally tally(const NormalMap& map) const;
   const NormalMap& before() const { return before_; }
 
  private:
@@ -31,12 +32,13 @@ class LiveSet {
   struct Tile {
     bool found = false;
     std::vector<SeenTexels> seen;  ///< by their owners; once found
-    PushTally tally;               ///< of the last update
     bool touched = false;          ///< by the last update
+    std::size_t visited = 0;
+    std::bitset<side * side> changed;  ///< texels
   };
   void find_seen(const std::vector<int>& tiles);
-  void edit_tile(Tile& tile, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
-                 NormalMap& map);
+  void edit_tile(int index, const Rect& pixels, const std::vector<TexelWrite>& shared,
+                 TexelLanes& lanes, NormalMap& map);
   template <class Item>
   void restore(const std::vector<Item>& items, NormalMap& map);
   void put(const std::vector<TexelWrite>& writes, NormalMap& map);

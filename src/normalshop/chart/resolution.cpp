@@ -49,8 +49,14 @@ Vec2f texels_across(const StorageSet& set, CountedTexels counted) {
       Vec2f(static_cast<float>(colors.width()), static_cast<float>(colors.height())));
 }
 
+/// An edge in axes of the triangle's own plane.
+Vec2f turned(const Vec3f& edge, const Vec3f& first, const Vec3f& cross) {
+  const Vec3f along = first.normalized();
+  return {edge.dot(along), edge.dot(cross.cross(along).normalized())};
+}
+
 bool measure(const Mesh& mesh, const std::vector<Vec2f>& sizes, const View& view, const Vec2f& low,
-             const Vec2f& high, std::size_t triangle, Density& out) {
+             const Vec2f& high, TexelLength length, std::size_t triangle, Density& out) {
   std::array<Vec3f, 3> p;
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = view.to_chart(mesh.position(3 * triangle + k) - view.center);
@@ -66,8 +72,12 @@ bool measure(const Mesh& mesh, const std::vector<Vec2f>& sizes, const View& view
   const auto texel = [&](std::size_t k) -> Vec2f {
     return (mesh.uvs[3 * triangle + k] - mesh.uvs[3 * triangle]).cwiseProduct(size);
   };
+  const Vec3f first = p[1] - p[0];
+  const Vec3f second = p[2] - p[0];
+  const bool seen = length == TexelLength::Seen;
   out.texels_per_unit =
-      stretch((p[1] - p[0]).head<2>(), (p[2] - p[0]).head<2>(), texel(1), texel(2));
+      stretch(seen ? Vec2f(first.head<2>()) : turned(first, first, cross),
+              seen ? Vec2f(second.head<2>()) : turned(second, first, cross), texel(1), texel(2));
   // Only what lies in the window counts, roughly.
   const Vec2f inside_low = low.cwiseMax(least.head<2>());
   const Vec2f inside_high = high.cwiseMin(most.head<2>());
@@ -80,7 +90,8 @@ bool measure(const Mesh& mesh, const std::vector<Vec2f>& sizes, const View& view
 }  // namespace
 
 float texel_pixel_size(const Mesh& mesh, const StorageAtlas& storage, const View& view,
-                       const Vec2f& low, const Vec2f& high, CountedTexels counted) {
+                       const Vec2f& low, const Vec2f& high, CountedTexels counted,
+                       TexelLength length) {
   constexpr std::size_t run = 32768;
   std::vector<Vec2f> sizes;
   for (const StorageSet& set : storage.sets) sizes.push_back(texels_across(set, counted));
@@ -90,7 +101,7 @@ float texel_pixel_size(const Mesh& mesh, const StorageAtlas& storage, const View
       const std::size_t last = std::min(mesh.triangle_count(), (part + 1) * run);
       Density d{};
       for (std::size_t t = part * run; t < last; ++t) {
-        if (measure(mesh, sizes, view, low, high, t, d)) parts[part].push_back(d);
+        if (measure(mesh, sizes, view, low, high, length, t, d)) parts[part].push_back(d);
       }
     }
   });

@@ -37,13 +37,22 @@ void append_seen(const EditReach& everywhere, TexelLanes& lanes, std::vector<See
     const auto at = static_cast<std::size_t>(s.count++);
     s.texels[at] = lanes.texels[k];
     s.triangles[at] = lanes.triangles[k];
-    s.x[at] = batch.point.x[k];
-    s.y[at] = batch.point.y[k];
+    const float x = s.x[at] = batch.point.x[k];
+    const float y = s.y[at] = batch.point.y[k];
+    s.left = at == 0 ? x : std::min(s.left, x);
+    s.right = at == 0 ? x : std::max(s.right, x);
+    s.top = at == 0 ? y : std::min(s.top, y);
+    s.bottom = at == 0 ? y : std::max(s.bottom, y);
     s.weight[at] = batch.weight[k];
     s.sign[at] = batch.sign[k];
     set(s.base, at, batch.base.get(i));
     set(s.tangent, at, batch.tangent.get(i));
   }
+}
+
+bool SeenTexels::meets(const Rect& pixels) const {
+  return left < static_cast<float>(pixels.x1) && right >= static_cast<float>(pixels.x0) &&
+         top < static_cast<float>(pixels.y1) && bottom >= static_cast<float>(pixels.y0);
 }
 
 bool SeenTexels::load(const EditReach& reach, TexelLanes& lanes) const {

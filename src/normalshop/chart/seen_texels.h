@@ -24,8 +24,13 @@ struct SeenTexels {
   Lane weight;  ///< of the effective chart, above 0
   std::array<Lane, 3> base;
   std::array<Lane, 3> tangent;
-  Lane sign;  ///< of the bitangent
+  Lane sign;          ///< of the bitangent
+  float left = 0.0F;  ///< a box around the pixels
+  float top = 0.0F;
+  float right = -1.0F;
+  float bottom = -1.0F;
 
+  bool meets(const Rect& pixels) const;
   /// Makes lanes of them, without weight where an edit does not reach. False when it reaches none.
   bool load(const EditReach& reach, TexelLanes& lanes) const;
 };

@@ -29,6 +29,16 @@ void raise(int& place, int value) {
 /// Whatever a stray vertex gives stays within what int holds.
 int pixel(float v) { return static_cast<int>(v > -1e6F ? std::min(v, 1e6F) : -1e6F); }
 
+/// Those entries of a list, in its order.
+template <class Item>
+std::vector<Item> sorted(const std::vector<Item>& items, std::vector<std::uint32_t> entries) {
+  std::sort(entries.begin(), entries.end());
+  std::vector<Item> out;
+  out.reserve(entries.size());
+  for (const std::uint32_t i : entries) out.push_back(items[i]);
+  return out;
+}
+
 }  // namespace
 
 TilePlaces::TilePlaces(const Mesh& mesh, const TexelMap& texels, std::uint32_t texture_set,
@@ -45,10 +55,11 @@ TilePlaces::TilePlaces(const Mesh& mesh, const TexelMap& texels, std::uint32_t t
   gutter_ = by_tile(texels.gutter());
   shared_ = by_tile(texels.shared());
   add_triangles();
+  gutter_points_.resize(texels.gutter().size());
   parallel_for(texels.gutter().size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const GutterTexel& g = texels_.gutter()[i];
-      add_point(tile_of(g.texel), gutter_source(g));
+      gutter_points_[i] = add_point(tile_of(g.texel), gutter_source(g));
     }
   });
   parallel_for(texels.shared().size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -117,13 +128,14 @@ void TilePlaces::add_triangle(std::uint32_t triangle) {
   });
 }
 
-void TilePlaces::add_point(int tile, const SurfacePoint& point) {
-  if (faces_away(mesh_, point.triangle, grid_.view.direction)) return;
+Vec2f TilePlaces::add_point(int tile, const SurfacePoint& point) {
+  if (faces_away(mesh_, point.triangle, grid_.view.direction)) return Vec2f::Constant(-1e9F);
   const std::size_t corner = 3 * static_cast<std::size_t>(point.triangle);
   const Vec3f position = interpolate(mesh_.position(corner), mesh_.position(corner + 1),
                                      mesh_.position(corner + 2), point.b1, point.b2);
   const Vec2f p = grid_.project(position).head<2>();
   grow(tile, p, p);
+  return p;
 }
 
 void TilePlaces::grow(int tile, const Vec2f& low, const Vec2f& high) {
@@ -145,32 +157,37 @@ std::vector<int> TilePlaces::meeting(const Rect& pixels) const {
   return out;
 }
 
-namespace {
-
-template <class Item, class Lists>
-std::vector<Item> entries(const std::vector<Item>& items, const Lists& lists,
-                          const std::vector<int>& tiles) {
-  std::vector<std::uint32_t> order;
+std::vector<SharedTexel> TilePlaces::shared_of(const std::vector<int>& tiles) const {
+  std::vector<std::uint32_t> entries;
   for (const int t : tiles) {
     const auto i = static_cast<std::size_t>(t);
-    order.insert(order.end(), lists.order.begin() + lists.first[i],
-                 lists.order.begin() + lists.first[i + 1]);
+    entries.insert(entries.end(), shared_.order.begin() + shared_.first[i],
+                   shared_.order.begin() + shared_.first[i + 1]);
   }
-  std::sort(order.begin(), order.end());
-  std::vector<Item> out;
-  out.reserve(order.size());
-  for (const std::uint32_t i : order) out.push_back(items[i]);
-  return out;
+  return sorted(texels_.shared(), std::move(entries));
 }
 
-}  // namespace
-
-std::vector<GutterTexel> TilePlaces::gutter_of(const std::vector<int>& tiles) const {
-  return entries(texels_.gutter(), gutter_, tiles);
-}
-
-std::vector<SharedTexel> TilePlaces::shared_of(const std::vector<int>& tiles) const {
-  return entries(texels_.shared(), shared_, tiles);
+std::vector<GutterTexel> TilePlaces::gutter_of(const std::vector<int>& tiles,
+                                               const Rect& pixels) const {
+  const auto low = Vec2f(static_cast<float>(pixels.x0), static_cast<float>(pixels.y0));
+  const auto high = Vec2f(static_cast<float>(pixels.x1), static_cast<float>(pixels.y1));
+  std::vector<std::uint32_t> entries;
+  for (const int t : tiles) {
+    const auto tile = static_cast<std::size_t>(t);
+    const std::uint32_t last = gutter_.first[tile + 1];
+    for (std::uint32_t i = gutter_.first[tile]; i < last;) {
+      const std::uint32_t begin = i;
+      const std::uint32_t texel = texels_.gutter()[gutter_.order[begin]].texel;
+      bool inside = false;
+      for (; i < last && texels_.gutter()[gutter_.order[i]].texel == texel; ++i) {
+        const Vec2f& p = gutter_points_[gutter_.order[i]];
+        inside = inside || ((p.array() >= low.array()).all() && (p.array() < high.array()).all());
+      }
+      if (!inside) continue;
+      entries.insert(entries.end(), gutter_.order.begin() + begin, gutter_.order.begin() + i);
+    }
+  }
+  return sorted(texels_.gutter(), std::move(entries));
 }
 
 }  // namespace normalshop

@@ -19,9 +19,14 @@ class TilePlaces {
 
   /// Tiles with anything in these pixels, rising.
   std::vector<int> meeting(const Rect& pixels) const;
-  /// The gutter and shared texels of some tiles, by texel.
-  std::vector<GutterTexel> gutter_of(const std::vector<int>& tiles) const;
+  /// All shared texels of some tiles, by texel.
   std::vector<SharedTexel> shared_of(const std::vector<int>& tiles) const;
+  bool shares(int tile) const {
+    const auto t = static_cast<std::size_t>(tile);
+    return shared_.first[t] != shared_.first[t + 1];
+  }
+  /// All entries of the gutter texels of some tiles of which at least one lies in these pixels.
+  std::vector<GutterTexel> gutter_of(const std::vector<int>& tiles, const Rect& pixels) const;
 
  private:
   struct Box {
@@ -41,7 +46,7 @@ class TilePlaces {
   int tile_of(std::uint32_t texel) const;
   void add_triangles();
   void add_triangle(std::uint32_t triangle);
-  void add_point(int tile, const SurfacePoint& point);
+  Vec2f add_point(int tile, const SurfacePoint& point);
   void grow(int tile, const Vec2f& low, const Vec2f& high);
 
   const Mesh& mesh_;
@@ -51,6 +56,7 @@ class TilePlaces {
   int columns_;
   std::vector<Box> boxes_;
   ByTile gutter_;
+  std::vector<Vec2f> gutter_points_;  // by entry: pixels, far away where they face away
   ByTile shared_;
 };
 

@@ -44,7 +44,8 @@ struct EffectiveAngles {
 };
 
 /// How much of the view the editing chart shows, in pixels as fine as its finest texels: what the
-/// strokes reach, or all of it, so that the chart is there before the strokes are.
+/// strokes reach, or all of it, so that the chart is there before the strokes are. Then, for
+/// operators that read no details, texels count as long as they are where they face the viewer.
 enum class ChartWindow { Strokes, View };
 constexpr auto names_of(ChartWindow) { return std::array<std::string_view, 2>{"strokes", "view"}; }
 

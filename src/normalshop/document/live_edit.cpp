@@ -127,6 +127,7 @@ EditReport LiveEdit::finish() {
     check_on_surface(state.edit, input.strokes, open.chart, region, open.place.model);
     const ColorResult colors = operate_on_colors(state.edit, open, input);
     report.times.operate += watch.lap();
+    report.pushed = state.push.result(document.storage_);
     fit_seams(document.mesh_, document.seams_, open.chart.grid, region, state.push.before(),
               document.storage_);
     if (!colors.change.empty()) {
@@ -138,7 +139,6 @@ EditReport LiveEdit::finish() {
     cancel();
     throw;
   }
-  report.pushed = state.push.result();
   report.times.push += watch.lap();
   document.log_.push_back(state.edit);
   document.live_ = false;

@@ -169,7 +169,11 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
                            : open.place.extent;
   const CountedTexels counted =
       edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
-  const float texel = texel_pixel_size(mesh, storage, view, shown.low, shown.high, counted);
+  // What reads no details loses none to pixels that are longer than texels seen at an angle.
+  const bool facing = edit.window == ChartWindow::View && !edit.operation->reads() &&
+                      !edit.operation->picks() && !edit.operation->moves_colors();
+  const float texel = texel_pixel_size(mesh, storage, view, shown.low, shown.high, counted,
+                                       facing ? TexelLength::Facing : TexelLength::Seen);
   open.chart = build_chart(edit, cover, mesh, storage,
                            choose_grid(edit, view, shown, open.place.model, texel), box.diagonal(),
                            transfer);
