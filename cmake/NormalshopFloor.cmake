@@ -57,13 +57,15 @@ endfunction()
 
 # normalshop_add_suites(PROGRAM SOURCES ...): each suite of the sources as a test of ctest.
 function(normalshop_add_suites program)
-  set_property(
-    DIRECTORY
-    APPEND
-    PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
   set(suites)
   foreach(source ${ARGN})
     file(STRINGS ${source} lines REGEX "^TEST(_F|_P)?\\(")
+    if(lines)
+      set_property(
+        DIRECTORY
+        APPEND
+        PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+    endif()
     list(TRANSFORM lines REPLACE "^TEST(_F|_P)?\\(([^,]*),.*" "\\2")
     list(APPEND suites ${lines})
   endforeach()

@@ -8,12 +8,12 @@
 namespace normalshop::test {
 namespace {
 
-constexpr int atlas_size = 160;
+constexpr int atlas_size = 96;
 
 /// Sphere whose map holds waves of a period of about 0.3, in object space, equal on both sides of
 /// its seam.
 Document wavy_sphere(float amplitude) {
-  const Mesh mesh = uv_sphere(64, 32);
+  const Mesh mesh = uv_sphere(32, 16);
   RawImage codes(atlas_size, atlas_size, 3, CodeType::F32);
   for (int y = 0; y < atlas_size; ++y) {
     for (int x = 0; x < atlas_size; ++x) {
@@ -45,10 +45,20 @@ std::string smooth_all(const std::string& view = R"("surface")") {
   return R"("operator": "smooth", "view": )" + view + R"(, "options": {"sigma": 0.04})";
 }
 
+/// Copies know the views that cover it already, which take long to find under sanitizers.
+const Document& covered_sphere() {
+  static const Document sphere = [] {
+    Document d = wavy_sphere(0.3F);
+    d.apply(edit(smooth_all() + R"(, "strength": 0)"));
+    return d;
+  }();
+  return sphere;
+}
+
 TEST(SurfaceEdit, SmoothsAllOfASphereWhateverTheViews) {
-  Document once = wavy_sphere(0.3F);
-  Document twice = once;
-  const Document before = once;
+  const Document& before = covered_sphere();
+  Document once = before;
+  Document twice = before;
   const EditReport report = once.apply(edit(smooth_all()));
   const EditReport more = twice.apply(
       edit(smooth_all(R"({"surface": {"views": )" + std::to_string(2 * report.views) + "}}")));
@@ -56,7 +66,7 @@ TEST(SurfaceEdit, SmoothsAllOfASphereWhateverTheViews) {
   EXPECT_EQ(more.views, 2 * report.views);
   EXPECT_GT(mean_angle(map_of(once), map_of(before)), 3.0);
   EXPECT_LT(mean_angle(map_of(once), map_of(twice)), 0.1);
-  EXPECT_EQ(once.log().size(), 1U);
+  EXPECT_EQ(once.log().size(), before.log().size() + 1);
 }
 
 /// A Gaussian leaves exp(-(k sigma)^2 / 2) of a wave, wherever one looks. On the surface the waves
@@ -71,7 +81,7 @@ TEST(SurfaceEdit, LeavesWhatTheFilterLeaves) {
 }
 
 TEST(SurfaceEdit, BothSidesOfASeamAgreeAfterwards) {
-  Document all = document(uv_sphere(64, 32), noise_map(atlas_size, CodeType::U16));
+  Document all = document(uv_sphere(32, 16), noise_map(atlas_size, CodeType::U16));
   const std::vector<const NormalMap*> maps{&map_of(all)};
   const std::vector<SeamSample> samples = sample_seams(all.mesh(), all.seams(), maps);
   const double before = summarize(seam_angles(all.mesh(), samples, maps)).mean;
@@ -101,7 +111,7 @@ TEST(SurfaceEdit, AFilterSeesNoBorderOfATiltedSurface) {
 
 TEST(SurfaceEdit, NothingToFilterKeepsEveryCode) {
   Document flat =
-      document(uv_sphere(64, 32), flat_normal_map(atlas_size, atlas_size, CodeType::U16));
+      document(uv_sphere(32, 16), flat_normal_map(atlas_size, atlas_size, CodeType::U16));
   EXPECT_EQ(flat.apply(edit(smooth_all())).pushed.changed, 0U);
   EXPECT_EQ(flat.apply(edit(R"("operator": "filter", "view": "surface",
                                "options": {"kind": "scale", "amount": 2})"))
@@ -111,12 +121,10 @@ TEST(SurfaceEdit, NothingToFilterKeepsEveryCode) {
 }
 
 TEST(SurfaceEdit, StrengthIsAPartOfIt) {
-  Document none = wavy_sphere(0.3F);
-  Document half = none;
-  Document full = none;
-  const Document before = none;
-  none.apply(edit(smooth_all() + R"(, "strength": 0)"));
-  EXPECT_FALSE(map_of(none).has_edits());
+  const Document& before = covered_sphere();
+  EXPECT_FALSE(map_of(before).has_edits()) << "after an edit of strength 0";
+  Document half = before;
+  Document full = before;
   half.apply(edit(smooth_all() + R"(, "strength": 0.5)"));
   full.apply(edit(smooth_all()));
   EXPECT_NEAR(mean_angle(map_of(half), map_of(before)) / mean_angle(map_of(full), map_of(before)),

@@ -46,7 +46,7 @@ OpenOptions six_charts(const TempFolder& folder) {
   OpenOptions options;
   options.model = folder / "sphere.gltf";
   export_gltf(options.model, cube_sphere(16, charts, "map"), {material});
-  write_image(folder / "flat.png", flat_normal_map(1024, 1024, CodeType::U16).codes());
+  write_image(folder / "flat.png", flat_normal_map(512, 512, CodeType::U16).codes());
   return options;
 }
 
