@@ -9,6 +9,7 @@
 #include "support/meshes.h"
 #include <benchmark/benchmark.h>
 
+#include "normalshop/core/normal_levels.h"
 #include "normalshop/surface/seams.h"
 #include "normalshop/surface/subdivide.h"
 #include "normalshop/surface/tangents.h"
@@ -112,6 +113,22 @@ void unwrap_mesh(benchmark::State& state) {
 BENCHMARK(unwrap_mesh)
     ->ArgNames({"model", "subdivided"})
     ->ArgsProduct({{Cube, Head}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// All mip levels of an 8-bit map with moments, and those above one tile of it.
+void normal_levels(benchmark::State& state) {
+  const auto size = static_cast<int>(state.range(0));
+  const NormalMap map = flat_normal_map(size, size, CodeType::U8);
+  NormalLevels levels(map);
+  for (auto _ : state) {
+    levels.update(map, state.range(1) == 0 ? Rect{0, 0, size, size} : Rect{640, 640, 704, 704});
+  }
+  state.counters["bytes_a_texel"] = static_cast<double>(levels.size_bytes()) / size / size;
+}
+BENCHMARK(normal_levels)
+    ->ArgNames({"size", "tile"})
+    ->ArgsProduct({{4096, 4095}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
