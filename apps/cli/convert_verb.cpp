@@ -15,15 +15,29 @@ struct ConvertFlags {
   ImageExport output;
   std::string to_green;
   bool normalize = false;
+  int level = 0;
+  std::string roughness;
   bool json = false;
 };
 
 void run_convert(const ConvertFlags& flags) {
+  if (!flags.roughness.empty() && flags.level == 0) {
+    throw WrongUse("--roughness", "needs the mip level that it is of: --level");
+  }
+  if (flags.level > 0 && (flags.normalize || flags.json)) {
+    throw WrongUse("--level", "writes a mip level alone, without --normalize and --json");
+  }
   const OpenImageOptions files = flags.image.open();
   const OpenedImage opened = open_image(files);
   ImageExport output = flags.output;
   output.type = code_type(flags.image.bits);
   if (!flags.to_green.empty()) output.green_down = flags.to_green == "down";
+  if (flags.level > 0) {
+    convert_level(files, opened, output, flags.level, read_roughness(flags.roughness));
+    print_notes(opened.notes);
+    std::printf("wrote %s\n", output.normals.string().c_str());
+    return;
+  }
   const ConvertReport report = convert_image(files, opened, output, flags.normalize);
   print_notes(opened.notes);
   if (flags.json) {
@@ -55,6 +69,11 @@ void add_convert_verb(CommandLine& program) {
              "DirectX")
       .one_of({"up", "down"});
   verb.flag("--normalize", flags.normalize, "Gives every normal length 1");
+  verb.takes("--level", flags.level, "Writes this mip level of the normals instead, from 1 on")
+      .between(1, 16);
+  verb.takes("--roughness", flags.roughness,
+             "The material's roughness, 0 to 1: writes it as a picture instead, with what the "
+             "normals of --level lose added");
   flags.image.add_bits(verb);
   verb.flag("--json", flags.json, "Print the result as JSON");
 }

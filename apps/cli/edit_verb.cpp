@@ -27,6 +27,9 @@ struct EditFlags {
   std::string bits;
   std::string transfer;
   std::string update;
+  bool mips = false;
+  std::string roughness;
+  int roughness_level = 1;
   bool json = false;
 
   ExportOptions export_options() const {
@@ -34,6 +37,9 @@ struct EditFlags {
     ExportPreset chosen{};
     if (!preset.empty() && from_name(preset, chosen)) out.preset = chosen;
     out.type = code_type(bits);
+    out.mip_levels = mips;
+    out.roughness = read_roughness(roughness);
+    out.roughness_level = roughness_level;
     return out;
   }
   TransferOptions transfer_options() const {
@@ -68,7 +74,7 @@ void print_job(const Job& job, const std::vector<std::string>& notes, bool json)
   }
 }
 
-void check_no_model_flags(const OpenOptions& options) {
+void check_no_model_flags(const OpenOptions& options, const ExportOptions& levels) {
   const auto refuse = [](bool given, const char* flag) {
     if (given) throw WrongUse(flag, "is for models; --normals edits a picture");
   };
@@ -77,6 +83,8 @@ void check_no_model_flags(const OpenOptions& options) {
   refuse(options.space.has_value(), "--space");
   refuse(options.flip_v, "--flip-v");
   refuse(options.size != 0, "--size");
+  refuse(levels.mip_levels, "--mips");
+  refuse(levels.roughness.has_value(), "--roughness");
 }
 
 ImageJob edit_image(const EditFlags& flags, const Recipe& recipe) {
@@ -85,7 +93,7 @@ ImageJob edit_image(const EditFlags& flags, const Recipe& recipe) {
                    "is for models; a picture is its own chart");
   }
   const OpenOptions options = flags.model.options();
-  check_no_model_flags(options);
+  check_no_model_flags(options, flags.export_options());
   OpenImageOptions open = flags.image.open();
   open.color = options.model;
   open.green_down = options.green_down;
@@ -138,6 +146,13 @@ void add_edit_verb(CommandLine& program) {
       .one_of({"gltf", "opengl", "directx", "object"});
   verb.takes("--bits", flags.bits, "Bits a channel of the written maps (the input's unless given)")
       .one_of({"8", "16", "32"});
+  verb.flag("--mips", flags.mips,
+            "Writes the mip levels of the maps too, free of what lies between charts");
+  verb.takes("--roughness", flags.roughness,
+             "The material's roughness, 0 to 1: writes it as a map too, with what the normals of "
+             "a mip level lose added");
+  verb.takes("--roughness-level", flags.roughness_level, "That mip level (1 unless given)")
+      .between(1, 16);
   verb.takes(
           "--transfer", flags.transfer,
           "How charts are made of a model's map: triangle (the default) or point, for comparison "

@@ -9,6 +9,13 @@ std::optional<CodeType> code_type(const std::string& bits) {
   return !bits.empty() && from_name(bits, type) ? std::optional(type) : std::nullopt;
 }
 
+std::optional<float> read_roughness(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<double> value = read_number(text);
+  if (value && *value >= 0.0 && *value <= 1.0) return static_cast<float>(*value);
+  throw WrongUse("--roughness", "must be a number from 0 to 1, not \"" + text + "\"");
+}
+
 void ImageFlags::add(Verb& verb) {
   verb.takes("--mask", files.mask, "Grey picture: where edits arrive (everywhere unless given)");
   verb.takes("--edges", edges,

@@ -11,6 +11,8 @@ namespace normalshop::cli {
 
 /// "8", "16", "32", or "": nothing.
 std::optional<CodeType> code_type(const std::string& bits);
+/// None for "". Throws WrongUse unless it is 0 to 1.
+std::optional<float> read_roughness(const std::string& text);
 
 /// Flags of the verbs that work on a picture with normals.
 struct ImageFlags {

@@ -368,6 +368,29 @@ TEST(EditJob, ColoursAreNotWrittenOverThoseTheyCameFrom) {
   EXPECT_FALSE(fs::exists(folder / "out/map_normal.png"));
 }
 
+/// All of the waves lie under the last level's one texel.
+TEST(EditJob, WritesMipLevelsAndRoughness) {
+  const TempFolder folder;
+  write_image(folder / "waves.png", waves(128, 128, CodeType::U16));
+  OpenOptions options;
+  options.model = write_model_file(folder, test::plane_grid(2), "waves.png");
+  ExportOptions how;
+  how.mip_levels = true;
+  how.roughness = 0.5F;
+  how.roughness_level = 7;
+  const EditJob job = run_edit_job(options, {}, folder / "out", how);
+  EXPECT_EQ(read_image(folder / "out" / "map_normal_mip3.png").width(), 16);
+  EXPECT_TRUE(fs::exists(folder / "out" / "map_normal_mip7.png"));
+  EXPECT_FALSE(fs::exists(folder / "out" / "map_normal_mip8.png"));
+  const RawImage roughness = read_image(folder / "out" / "map_roughness.png");
+  ASSERT_EQ(roughness.width(), 1);
+  // 0.4^2 / 2 along both axes.
+  EXPECT_NEAR(roughness.code(0, 0, 0), 255.0F * std::pow(0.0625F + 0.16F, 0.25F), 0.6F);
+  how.roughness_level = 8;
+  EXPECT_THROW(run_edit_job(options, {}, folder / "none", how), InvalidInput);
+  EXPECT_FALSE(fs::exists(folder / "none"));
+}
+
 TEST(EditJob, DoesNotDependOnThreads) {
   const TempFolder folder;
   write_image(folder / "waves.png", waves(256, 256, CodeType::U8));

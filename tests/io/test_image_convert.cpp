@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/normal_levels.h"
 #include "normalshop/core/slope.h"
 #include "normalshop/io/image_convert.h"
 #include "normalshop/io/image_file.h"
@@ -59,6 +60,19 @@ TEST_F(ImageConvert, NothingAskedChangesNothing) {
   EXPECT_EQ(report.not_unit, std::size_t{size} * size / 2 - 1);
   EXPECT_EQ(report.without_direction, 1U);
   EXPECT_TRUE(same_codes(read_image(folder_ / "out.png"), uneven_codes()));
+}
+
+TEST_F(ImageConvert, OneMipLevelIsWritten) {
+  const OpenedImage opened = open_image(input_);
+  const NormalLevels levels(opened.document.normals());
+  convert_level(input_, opened, {.normals = folder_ / "l.png", .green_down = true}, 2, {});
+  const NormalMap level = written("l.png", true);
+  ASSERT_EQ(level.width(), size / 4);
+  EXPECT_LT(angle_degrees(level.normal(1, 2), levels.normal(2, 1, 2)), 0.01);
+  convert_level(input_, opened, {folder_ / "r.png"}, 1, 0.3F);
+  EXPECT_EQ(read_image(folder_ / "r.png").channels(), 1);
+  EXPECT_THROW(convert_level(input_, opened, {folder_ / "x.png"}, 12, {}), InvalidInput);
+  EXPECT_THROW(convert_level(input_, opened, {input_.normals}, 1, {}), InvalidInput);
 }
 
 TEST_F(ImageConvert, GreenIsTurned) {

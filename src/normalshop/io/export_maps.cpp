@@ -1,6 +1,7 @@
 #include "normalshop/io/export_maps.h"
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/normal_levels.h"
 #include "normalshop/io/detail/extension.h"
 #include "normalshop/io/image_file.h"
 #include "normalshop/surface/convert_space.h"
@@ -85,12 +86,30 @@ class MapWriter {
     const std::string name = map_name(opened_, i, type, options_.preset);
     progress_.at(0.0, "encoding maps");
     check_not_input(opened_, staged_.folder() / name);
-    put(name, export_map(opened_, i, options_),
-        {.half_float = set.half_float && !options_.type && name.ends_with(".exr")});
+    const RawImage codes = export_map(opened_, i, options_);
+    const ImageWriteOptions how{.half_float =
+                                    set.half_float && !options_.type && name.ends_with(".exr")};
+    put(name, codes, how);
     const NormalConvention convention = target_convention(map.convention(), options_.preset);
+    if (options_.mip_levels || options_.roughness)
+      write_levels(i, NormalMap(codes, convention), how);
     references[i].normal = name;
     references[i].scale_applied = convention.scale != opened_.model.texture_sets[i].normal_scale;
     if (for_viewers()) note_for_viewers(name, type, convention, notes_);
+  }
+
+  /// Of the map as it is written.
+  void write_levels(std::size_t i, const NormalMap& map, const ImageWriteOptions& how) {
+    const CodeType type = map.codes().type();
+    const std::filesystem::path name = map_name(opened_, i, type, options_.preset);
+    const NormalLevels levels(map, covered_texels(opened_.document.storage().sets[i].texels));
+    for (int level = 1; options_.mip_levels && level <= levels.last(); ++level) {
+      put(name.stem().string() + "_mip" + std::to_string(level) + name.extension().string(),
+          levels.encode(level, type, map.convention()), how);
+    }
+    if (!options_.roughness) return;
+    put(opened_.model.texture_sets[i].name + "_roughness.png",
+        roughness_map(levels, options_.roughness_level, *options_.roughness, CodeType::U8), {});
   }
 
   /// Colours that no edit moved stay where they are.

@@ -22,6 +22,12 @@ struct ExportOptions {
   /// None: the conventions that the map came with.
   std::optional<ExportPreset> preset;
   std::optional<CodeType> type;  ///< none: that of the imported map
+  /// Every mip level too, as `<texture set>_normal_mip<level>`, without what lies between charts.
+  bool mip_levels = false;
+  /// The roughness, 0 to 1, of the material: what the normals of a mip level lose is added to it
+  /// (widened_roughness) and written as `<texture set>_roughness.png`.
+  std::optional<float> roughness;
+  int roughness_level = 1;  ///< from 1 on
 };
 
 /// The texture set's map as it would be written. With the imported conventions, type and size every

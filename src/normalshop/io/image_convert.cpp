@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
+
+#include "normalshop/core/error.h"
+#include "normalshop/core/normal_levels.h"
+#include "normalshop/io/image_file.h"
 
 namespace normalshop {
 
@@ -57,6 +62,25 @@ ConvertReport convert_image(const OpenImageOptions& input, const OpenedImage& op
   for (int y = 0; y < map.height(); ++y) converter.convert_row(y, normalize);
   write_normals(map, opened.half_float, target);
   return converter.report;
+}
+
+void convert_level(const OpenImageOptions& input, const OpenedImage& opened,
+                   const ImageExport& target, int level, std::optional<float> roughness) {
+  check_not_input(target.normals, input);
+  const NormalMap& map = opened.document.normals();
+  const NormalLevels levels(map);
+  if (roughness) {
+    write_image(target.normals,
+                roughness_map(levels, level, *roughness, target.type.value_or(CodeType::U8)));
+    return;
+  }
+  if (level > levels.last()) {
+    throw InvalidInput("the map has mip levels 1 to " + std::to_string(levels.last()) + ", not " +
+                       std::to_string(level));
+  }
+  const NormalMap written(levels.encode(level, map.codes().type(), map.convention()),
+                          map.convention());
+  write_normals(written, opened.half_float, target);
 }
 
 }  // namespace normalshop

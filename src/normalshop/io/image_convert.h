@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "normalshop/io/image_job.h"
 
@@ -18,5 +19,11 @@ struct ConvertReport {
 /// inputs.
 ConvertReport convert_image(const OpenImageOptions& input, const OpenedImage& opened,
                             const ImageExport& target, bool normalize);
+
+/// Writes one mip level (NormalLevels; from 1 on) of the normals as `target` has them, or with a
+/// `roughness` that of a material with what the level loses added (roughness_map), in 8 bits unless
+/// target.type says otherwise. Throws IoError or InvalidInput.
+void convert_level(const OpenImageOptions& input, const OpenedImage& opened,
+                   const ImageExport& target, int level, std::optional<float> roughness);
 
 }  // namespace normalshop

@@ -229,6 +229,13 @@ Vec2f rows_of(const TexelAffine& a) {
 
 }  // namespace
 
+CoverageReader covered_texels(const TexelMap& texels) {
+  return [&texels](int x, int count, int y, float* coverage) {
+    const std::uint32_t* owner = texels.owner().row(y) + x;
+    for (int i = 0; i < count; ++i) coverage[i] = owner[i] == no_triangle ? 0.0F : 1.0F;
+  };
+}
+
 SurfacePoint TexelMap::surface_point(std::uint32_t triangle, int x, int y) const {
   const TexelAffine& a = affines_[triangle];
   const Vec2f here = a.at(static_cast<float>(x), static_cast<float>(y));

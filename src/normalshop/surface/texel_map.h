@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "normalshop/core/image.h"
+#include "normalshop/core/normal_levels.h"
 #include "normalshop/surface/frames.h"
 #include "normalshop/surface/mesh.h"
 
@@ -107,5 +108,8 @@ class TexelMap {
   std::vector<SharedTexel> shared_;
   std::vector<GutterTexel> gutter_;
 };
+
+/// Texels count that a triangle owns; the gutter does not. Reads the map while it is used.
+CoverageReader covered_texels(const TexelMap& texels);
 
 }  // namespace normalshop
