@@ -60,7 +60,9 @@ Vec3f NormalEditor::gutter_vector(const GutterTexel& g, const Mat3f& frame, cons
                                g.source.b1, g.source.b2);
   const Mat3f across =
       source.frame(weights, source.normals * weights, space_, sampler_.grid().view);
-  const Vec3f grown = frame.inverse() * (across * before_.sample(uv));
+  const Vec3f grown = frame.inverse() *
+                      (across * before_.sample(reading_place(mesh_, mesh_.texture_sets[g.owner], uv,
+                                                             before_.width(), before_.height())));
   if (!grown.allFinite() || grown.isZero()) return own;
   constexpr float strong = 0.05F;  // a slope of three degrees
   const float share = std::min(1.0F, strength / strong);

@@ -5,6 +5,7 @@
 #include "normalshop/chart/pixel_row.h"
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
+#include "normalshop/core/sample.h"
 
 namespace normalshop {
 
@@ -64,6 +65,7 @@ class Pull {
   void clear_row(int y, int x0, int count);
   void read_maps(const Run& run);
   void find_texels_ahead(const Run& run);
+  std::pair<const float*, const float*> places(const Run& run, const RawImage& codes);
   void fetch(const RawImage& codes, const Run& run) const;
   Vec3f irregular_detail(std::size_t i) const;
 
@@ -73,6 +75,8 @@ class Pull {
   EditingChart& chart_;
   TriangleCache<PixelTriangle> triangles_;
   std::array<VisibleRow, 8> visible_;  // of the next rows
+  std::vector<float> single_u_;
+  std::vector<float> single_v_;
   PixelRow row_;
   std::array<float, PixelRow::capacity> u_before_{};  // of the row above
   std::array<float, PixelRow::capacity> v_before_{};
@@ -181,6 +185,23 @@ void Pull::fetch(const RawImage& codes, const Run& run) const {
   }
 }
 
+/// u and v of a run, off the opposite border where the map does not repeat.
+std::pair<const float*, const float*> Pull::places(const Run& run, const RawImage& codes) {
+  const auto begin = static_cast<std::size_t>(run.begin);
+  if (mesh_.repeats(run.texture_set) || codes.empty()) return {&row_.u[begin], &row_.v[begin]};
+  const auto count = static_cast<std::size_t>(run.end - run.begin);
+  single_u_.resize(std::max(single_u_.size(), count + sample_padding));
+  single_v_.resize(single_u_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2f place =
+        reading_place(mesh_, run.texture_set, {row_.u[begin + i], row_.v[begin + i]}, codes.width(),
+                      codes.height());
+    single_u_[i] = place.x();
+    single_v_[i] = place.y();
+  }
+  return {single_u_.data(), single_v_.data()};
+}
+
 void Pull::read_maps(const Run& run) {
   if (!options_.albedo && !options_.normals) return;
   const StorageSet& set = storage_.sets[run.texture_set];
@@ -189,13 +210,13 @@ void Pull::read_maps(const Run& run) {
   if (options_.normals) fetch(set.normals.codes(), run);
   const auto begin = static_cast<std::size_t>(run.begin);
   const int count = run.end - run.begin;
-  const float* u = &row_.u[begin];
-  const float* v = &row_.v[begin];
   if (options_.albedo) {
+    const auto [u, v] = places(run, set.albedo.codes());
     set.albedo.sample(u, v, count, &row_.color.x[begin], &row_.color.y[begin],
                       &row_.color.z[begin]);
   }
   if (!options_.normals) return;
+  const auto [u, v] = places(run, set.normals.codes());
   set.normals.sample(u, v, count, &row_.stored.x[begin], &row_.stored.y[begin],
                      &row_.stored.z[begin]);
   const NormalSpace space = set.normals.convention().space;

@@ -3,6 +3,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/detail/model_source.h"
+#include "normalshop/io/udim.h"
 
 namespace normalshop {
 
@@ -69,7 +70,20 @@ std::string Companions::write(const std::string& reference, std::string_view byt
   return name;
 }
 
+/// Every tile's file, as far as they exist.
+std::string Companions::copy_tiles(const std::string& reference) {
+  const std::string pattern = place(reference);
+  if (reserved(folder_ / pattern)) return pattern;
+  for (int tile = first_tile_number; tile <= last_tile_number; ++tile) {
+    std::error_code error;
+    const std::string name = tile_path(reference, tile).generic_string();
+    if (fs::is_regular_file(source_folder_ / name, error)) copy(name);
+  }
+  return pattern;
+}
+
 std::string Companions::copy(const std::string& reference) {
+  if (names_tiles(reference)) return copy_tiles(reference);
   const fs::path from = source_folder_ / reference;
   const std::string key = from.lexically_normal().string();
   const auto known = done_.find(key);

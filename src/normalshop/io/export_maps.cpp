@@ -22,13 +22,22 @@ NormalConvention target_convention(const NormalConvention& own,
   return to;
 }
 
-std::string map_name(const OpenedDocument& opened, std::size_t set, CodeType type,
-                     const std::optional<ExportPreset>& preset) {
+const char* normal_extension(const OpenedSet& set, CodeType type,
+                             const std::optional<ExportPreset>& preset) {
   const bool png = preset == ExportPreset::Gltf && type != CodeType::F32;
-  const char* extension = opened.sets[set].tiff && !png ? "_normal.tif"
-                          : type == CodeType::F32       ? "_normal.exr"
-                                                        : "_normal.png";
-  return opened.model.texture_sets[set].name + extension;
+  return set.tiff && !png ? ".tif" : type == CodeType::F32 ? ".exr" : ".png";
+}
+
+/// "<set>_<kind>.png", of a tile "<tiled set>_<kind>.1001.png".
+std::string map_name(const TextureSet& set, const std::string& kind, const char* extension) {
+  if (set.tile == 0) return set.name + "_" + kind + extension;
+  return set.tiled_name + "_" + kind + "." + std::to_string(set.tile) + extension;
+}
+
+/// How the model refers to it: for all tiles at once.
+std::string map_reference(const TextureSet& set, const std::string& kind, const char* extension) {
+  if (set.tile == 0) return map_name(set, kind, extension);
+  return set.tiled_name + "_" + kind + ".<UDIM>" + extension;
 }
 
 /// What glTF viewers will make nothing, or something else, of.
@@ -81,9 +90,14 @@ class MapWriter {
     const OpenedSet& set = opened_.sets[i];
     const NormalMap& map = opened_.document.storage().sets[i].normals;
     // A flat map that was only made to be edited adds nothing.
-    if (set.normal_map.empty() && !map.has_edits()) return;
+    if (set.normal_map.empty() &&
+        !any_tile(i, [](const StorageSet& s) { return s.normals.has_edits(); })) {
+      return;
+    }
+    const TextureSet& textures = opened_.model.texture_sets[i];
     const CodeType type = options_.type.value_or(set.type);
-    const std::string name = map_name(opened_, i, type, options_.preset);
+    const char* extension = normal_extension(set, type, options_.preset);
+    const std::string name = map_name(textures, "normal", extension);
     progress_.at(0.0, "encoding maps");
     check_not_input(opened_, staged_.folder() / name);
     const RawImage codes = export_map(opened_, i, options_);
@@ -93,36 +107,52 @@ class MapWriter {
     const NormalConvention convention = target_convention(map.convention(), options_.preset);
     if (options_.mip_levels || options_.roughness)
       write_levels(i, NormalMap(codes, convention), how);
-    references[i].normal = name;
-    references[i].scale_applied = convention.scale != opened_.model.texture_sets[i].normal_scale;
+    references[i].normal = map_reference(textures, "normal", extension);
+    references[i].scale_applied = convention.scale != textures.normal_scale;
     if (for_viewers()) note_for_viewers(name, type, convention, notes_);
+  }
+
+  /// The set, or any tile of the same set: the model refers to all of its tiles at once.
+  template <class Holds>
+  bool any_tile(std::size_t i, const Holds& holds) const {
+    const TextureSet& own = opened_.model.texture_sets[i];
+    for (std::size_t k = 0; k < opened_.sets.size(); ++k) {
+      const TextureSet& other = opened_.model.texture_sets[k];
+      const bool tile_of_same = own.tile != 0 && other.tiled_name == own.tiled_name;
+      if ((k == i || tile_of_same) && holds(opened_.document.storage().sets[k])) return true;
+    }
+    return false;
   }
 
   /// Of the map as it is written.
   void write_levels(std::size_t i, const NormalMap& map, const ImageWriteOptions& how) {
+    const TextureSet& textures = opened_.model.texture_sets[i];
     const CodeType type = map.codes().type();
-    const std::filesystem::path name = map_name(opened_, i, type, options_.preset);
+    const char* extension = normal_extension(opened_.sets[i], type, options_.preset);
     const NormalLevels levels(map, covered_texels(opened_.document.storage().sets[i].texels));
     for (int level = 1; options_.mip_levels && level <= levels.last(); ++level) {
-      put(name.stem().string() + "_mip" + std::to_string(level) + name.extension().string(),
+      put(map_name(textures, "normal_mip" + std::to_string(level), extension),
           levels.encode(level, type, map.convention()), how);
     }
     if (!options_.roughness) return;
-    put(opened_.model.texture_sets[i].name + "_roughness.png",
+    put(map_name(textures, "roughness", ".png"),
         roughness_map(levels, options_.roughness_level, *options_.roughness, CodeType::U8), {});
   }
 
   /// Colours that no edit moved stay where they are.
   void write_colors(std::size_t i) {
     const ColorMap& map = opened_.document.storage().sets[i].albedo;
-    if (!map.has_edits()) return;
+    if (map.empty() || !any_tile(i, [](const StorageSet& s) { return s.albedo.has_edits(); })) {
+      return;
+    }
+    const TextureSet& textures = opened_.model.texture_sets[i];
     const RawImage codes = map.encode();
     const bool floats = codes.type() == CodeType::F32;
-    const std::string name =
-        opened_.model.texture_sets[i].name + (floats ? "_color.exr" : "_color.png");
+    const char* extension = floats ? ".exr" : ".png";
+    const std::string name = map_name(textures, "color", extension);
     check_not_input(opened_, staged_.folder() / name);
     put(name, codes, {});
-    references[i].color = name;
+    references[i].color = map_reference(textures, "color", extension);
     if (floats && for_viewers()) notes_.push_back(name + ": glTF viewers read only PNG and JPEG");
   }
 

@@ -25,7 +25,9 @@ struct MapSource {
 /// Triangles that share one atlas: all materials with the same normal image and scale (or, where
 /// none has one, the same colour image) and the same UVs. Its index is Mesh::texture_sets' value.
 struct TextureSet {
-  std::string name;  ///< safe as a file name, different from the others'
+  std::string name;        ///< safe as a file name, different from the others'
+  int tile = 0;            ///< UDIM tile (1001 and on) that it is; 0: none
+  std::string tiled_name;  ///< of a tile: that of the set that it is a tile of
   std::optional<MapSource> normal_map;
   float normal_scale = 1.0F;  ///< glTF: multiplies x and y of the normals
   std::optional<MapSource> albedo;

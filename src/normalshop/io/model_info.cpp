@@ -63,6 +63,8 @@ Value set_info(const OpenedDocument& opened, const Seams& seams, std::size_t i) 
                     {"texel size", Value::Object{{"median", density.area_median},
                                                  {"smallest 5 %", density.p05},
                                                  {"largest 5 %", density.p95}}}};
+  const int tile = opened.model.texture_sets[i].tile;
+  if (tile != 0) out.emplace_back("tile", tile);
   if (info.guess) out.emplace_back("guessed", guess_value(*info.guess));
   return out;
 }

@@ -13,6 +13,7 @@
 #include "normalshop/io/detail/obj_text.h"
 #include "normalshop/io/detail/polygon.h"
 #include "normalshop/io/image_file.h"
+#include "normalshop/io/udim.h"
 
 namespace normalshop {
 
@@ -250,7 +251,10 @@ class ObjReader {
     auto source = map_source(material.bump_texname, library);
     if (!source) return std::nullopt;
     try {
-      if (looks_like_normal_map(read_image(source->path))) {
+      const std::filesystem::path seen = names_tiles(source->path)
+                                             ? first_tile(source->path).value_or(source->path)
+                                             : source->path;
+      if (looks_like_normal_map(read_image(seen))) {
         model_.notes.push_back("the bump map '" + source->name + "' of the material '" +
                                material.name + "' holds normals and is taken as normal map");
         return source;

@@ -8,6 +8,7 @@
 #include "normalshop/core/slope.h"
 #include "normalshop/io/detail/naming.h"
 #include "normalshop/io/image_file.h"
+#include "normalshop/io/udim.h"
 #include "normalshop/surface/texel_density.h"
 
 namespace normalshop {
@@ -202,6 +203,43 @@ void note_shared_texels(OpenedDocument& opened) {
 
 }  // namespace
 
+namespace {
+
+/// The maps that a model is opened with, one of each kind a texture set.
+struct ChosenMaps {
+  std::vector<std::optional<MapSource>> normals;
+  std::vector<std::optional<MapSource>> albedos;
+};
+
+/// Texture sets whose maps name UDIM tiles become one a tile.
+void split_into_tiles(Model& model, ChosenMaps& given) {
+  std::vector<bool> tiled;
+  const auto in_tiles = [](const std::optional<MapSource>& source) {
+    return source && names_tiles(source->path);
+  };
+  for (std::size_t i = 0; i < model.texture_sets.size(); ++i) {
+    const TextureSet& set = model.texture_sets[i];
+    tiled.push_back(in_tiles(choose(given.normals[i], set.normal_map)) ||
+                    in_tiles(choose(given.albedos[i], set.albedo)));
+  }
+  if (std::find(tiled.begin(), tiled.end(), true) == tiled.end()) return;
+  const std::vector<std::size_t> old = split_tiles(model, tiled);
+  for (auto* maps : {&given.normals, &given.albedos}) {
+    std::vector<std::optional<MapSource>> all;
+    for (std::size_t i = 0; i < old.size(); ++i) {
+      std::optional<MapSource> source = (*maps)[old[i]];
+      if (in_tiles(source)) {
+        source->path = tile_path(source->path, model.texture_sets[i].tile);
+        source->name = source->path.string();
+      }
+      all.push_back(std::move(source));
+    }
+    *maps = std::move(all);
+  }
+}
+
+}  // namespace
+
 OpenedDocument open_document(const OpenOptions& options, const Progress& progress) {
   if (options.size < 0 || options.size > largest_size) {
     throw InvalidInput("--size must be from 1 to 16384 texels");
@@ -210,8 +248,10 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
   ModelReadOptions reading;
   reading.flip_v = options.flip_v;
   Model model = read_model(options.model, reading);
-  const auto normals = given_maps(options.normal_maps, model, "--normal-map");
-  const auto albedos = given_maps(options.albedos, model, "--albedo");
+  ChosenMaps given{given_maps(options.normal_maps, model, "--normal-map"),
+                   given_maps(options.albedos, model, "--albedo")};
+  split_into_tiles(model, given);
+  const auto& [normals, albedos] = given;
   Mesh mesh = std::move(model.mesh);
   model.mesh = {};
 

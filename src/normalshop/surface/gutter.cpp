@@ -56,6 +56,7 @@ class Gutter {
         topology_(ground.topology),
         affines_(ground.affines),
         owner_(ground.owner),
+        repeats_(ground.repeats),
         overlaps_(ground.overlaps),
         reach_(reach),
         period_{owner_.width(), owner_.height()} {
@@ -231,6 +232,7 @@ class Gutter {
             index.data() + static_cast<std::ptrdiff_t>(y - first) * period_.width;
         for (std::int64_t row = first_at_or_after(rows.begin, y, period_.height); row < rows.end;
              row += period_.height) {
+          if (!repeats_ && row != y) continue;
           offer_row(item, y, row, index_row, offer);
         }
       }
@@ -246,7 +248,7 @@ class Gutter {
     const GridRange columns = columns_near(b, py);
     std::int64_t x = wrap(columns.begin, period_.width);
     for (std::int64_t column = columns.begin; column < columns.end; ++column) {
-      if (owner_row[x] == no_triangle) {
+      if (owner_row[x] == no_triangle && (repeats_ || x == column)) {
         const auto texel = static_cast<std::uint32_t>(x + std::int64_t{y} * period_.width);
         offer(item, texel, Vec2d(static_cast<double>(column) + 0.5, py), index_row[x]);
       }
@@ -355,6 +357,7 @@ class Gutter {
   const Topology& topology_;
   const std::vector<TexelAffine>& affines_;
   const Image<std::uint32_t>& owner_;
+  bool repeats_;
   bool overlaps_;
   int reach_;
   Period period_;

@@ -29,6 +29,10 @@ struct Mesh {
 
   std::vector<std::uint32_t> texture_sets;  ///< per triangle, index into texture_set_names
   std::vector<std::string> texture_set_names;
+  /// Per texture set, 1: its map ends at 0 and 1 instead of repeating, and all its UVs lie there (a
+  /// UDIM tile). Empty: all maps repeat.
+  std::vector<std::uint8_t> single_maps;
+  bool repeats(std::uint32_t set) const { return single_maps.empty() || single_maps[set] == 0; }
 
   /// For object-space maps of files whose nodes are turned or scaled: per triangle, which of
   /// node_normals takes a node's own normals to this mesh's space (not normalised; the inverse
@@ -47,6 +51,10 @@ struct Mesh {
     return positions[triangles[corner / 3][static_cast<Eigen::Index>(corner % 3)]];
   }
 };
+
+/// Where a texture set's map of that size is read for a UV: there, or, where the map does not
+/// repeat, at the nearest place that takes nothing from its opposite border.
+Vec2f reading_place(const Mesh& mesh, std::uint32_t set, const Vec2f& uv, int width, int height);
 
 /// Smallest box around all positions that a triangle uses; low > high for a mesh without triangles.
 struct Bounds {

@@ -303,9 +303,10 @@ SeamFit::Side SeamFit::side(const Mesh& mesh, const SurfacePoint& point, NormalM
   const std::uint32_t set = mesh.texture_sets[point.triangle];
   const NormalMap& map = *maps[set];
   const std::size_t corner = 3 * static_cast<std::size_t>(point.triangle);
-  const WrappedTaps tap(interpolate<Vec2f>(mesh.uvs[corner], mesh.uvs[corner + 1],
-                                           mesh.uvs[corner + 2], point.b1, point.b2),
-                        map.width(), map.height());
+  const Vec2f uv = interpolate<Vec2f>(mesh.uvs[corner], mesh.uvs[corner + 1], mesh.uvs[corner + 2],
+                                      point.b1, point.b2);
+  const WrappedTaps tap(reading_place(mesh, set, uv, map.width(), map.height()), map.width(),
+                        map.height());
   Side out;
   out.to_object = frame_at(mesh, point, map.convention().space).to_object;
   out.weights = {(1.0F - tap.fx) * (1.0F - tap.fy), tap.fx * (1.0F - tap.fy),

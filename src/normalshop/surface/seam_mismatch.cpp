@@ -19,10 +19,12 @@ const NormalMap& map_of(const Mesh& mesh, std::uint32_t triangle, NormalMaps map
   return *maps[mesh.texture_sets[triangle]];
 }
 
-Vec2f uv_at(const Mesh& mesh, const SurfacePoint& p) {
+Vec2f place_in(const NormalMap& map, const Mesh& mesh, const SurfacePoint& p) {
   const std::size_t corner = 3 * static_cast<std::size_t>(p.triangle);
-  return interpolate<Vec2f>(mesh.uvs[corner], mesh.uvs[corner + 1], mesh.uvs[corner + 2], p.b1,
-                            p.b2);
+  return reading_place(
+      mesh, mesh.texture_sets[p.triangle],
+      interpolate<Vec2f>(mesh.uvs[corner], mesh.uvs[corner + 1], mesh.uvs[corner + 2], p.b1, p.b2),
+      map.width(), map.height());
 }
 
 /// The point at fraction t of the way between two corners of a triangle.
@@ -41,14 +43,14 @@ float texels_between(const Mesh& mesh, std::uint32_t from, std::uint32_t to, Nor
 
 Vec3f normal_at(const Mesh& mesh, const SurfacePoint& p, NormalMaps maps) {
   const NormalMap& map = map_of(mesh, p.triangle, maps);
-  const Vec3f read = map.sample(uv_at(mesh, p));
+  const Vec3f read = map.sample(place_in(map, mesh, p));
   const Vec3f n = frame_at(mesh, p, map.convention().space).object_normal(read);
   return n.isZero() ? base_normal_at(mesh, p) : n;
 }
 
 bool is_edited(const Mesh& mesh, const SurfacePoint& p, NormalMaps maps) {
   const NormalMap& map = map_of(mesh, p.triangle, maps);
-  const WrappedTaps tap(uv_at(mesh, p), map.width(), map.height());
+  const WrappedTaps tap(place_in(map, mesh, p), map.width(), map.height());
   return map.edited(tap.x0, tap.y0) || map.edited(tap.x1, tap.y0) || map.edited(tap.x0, tap.y1) ||
          map.edited(tap.x1, tap.y1);
 }

@@ -71,6 +71,7 @@ Mesh subdivide_once(const Mesh& mesh) {
   }
   Mesh result;
   result.texture_set_names = mesh.texture_set_names;
+  result.single_maps = mesh.single_maps;
   result.positions = mesh.positions;
   result.triangles.reserve(4 * mesh.triangle_count());
   split_triangles(mesh, result);

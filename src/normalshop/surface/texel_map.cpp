@@ -171,7 +171,8 @@ TexelMap::TexelMap(const Mesh& mesh, const Topology& topology, std::uint32_t tex
   owner_.resize(width, height);
   find_owners(mesh);
   if (gutter == 0) return;
-  gutter_ = grow_gutter({mesh, topology, affines_, owner_, !shared_.empty()}, gutter);
+  gutter_ = grow_gutter(
+      {mesh, topology, affines_, owner_, mesh.repeats(texture_set), !shared_.empty()}, gutter);
 }
 
 void TexelMap::find_owners(const Mesh& mesh) {

@@ -57,6 +57,7 @@ class Companions {
 
  private:
   std::string place(const std::string& reference) const;
+  std::string copy_tiles(const std::string& reference);
   std::string unused(const std::string& wanted) const;
   bool reserved(const std::filesystem::path& target) const;
   void put(const std::string& name, std::string_view bytes);

@@ -14,6 +14,7 @@ struct GutterGround {
   const Topology& topology;
   const std::vector<TexelAffine>& affines;
   const Image<std::uint32_t>& owner;
+  bool repeats;   ///< what lies beyond the map's border is its other side
   bool overlaps;  ///< charts lie on each other: borders may too
 };
 
