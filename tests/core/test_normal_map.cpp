@@ -312,6 +312,22 @@ TEST(NormalMap, NeedsEnoughChannels) {
   EXPECT_NO_THROW(NormalMap(random_codes(2, 2, 2, CodeType::U8), {.two_channel = true}));
 }
 
+TEST(NormalMap, EncodesRowsAsTheWholeMap) {
+  NormalMap map = flat_normal_map(70, 90, CodeType::U8);
+  for (int y = 10; y < 80; y += 3) map.set_normal(y % 70, y, normal_from_slope({0.3F, 0.1F}));
+  NormalConvention down = map.convention();
+  down.green_down = true;
+  for (const NormalConvention& to : {map.convention(), down}) {
+    const RawImage whole = map.encode(CodeType::U16, to);
+    const RawImage same = map.encode(CodeType::U8, to);
+    const RawImage rows = map.encode_rows(60, 21, CodeType::U16, to);
+    const RawImage same_rows = map.encode_rows(60, 21, CodeType::U8, to);
+    ASSERT_EQ(rows.height(), 21);
+    EXPECT_EQ(std::memcmp(rows.data(), whole.row_data(60), rows.size_bytes()), 0);
+    EXPECT_EQ(std::memcmp(same_rows.data(), same.row_data(60), same_rows.size_bytes()), 0);
+  }
+}
+
 TEST(NormalMap, EncodesAlikeOnOneThread) {
   const NormalMap map(random_codes(200, 150, 3, CodeType::U16), {});
   const RawImage many = map.encode(CodeType::U8, {});

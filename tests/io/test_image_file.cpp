@@ -5,9 +5,11 @@
 
 #include "io/temp_folder.h"
 #include "support/data.h"
+#include "support/same_codes.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
+#include "normalshop/core/normal_map.h"
 #include "normalshop/core/random.h"
 #include "normalshop/io/atomic_file.h"
 #include "normalshop/io/image_file.h"
@@ -97,6 +99,21 @@ INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, ::testing::ValuesIn(exact_cases()),
                                   std::to_string(8 * RawImage::code_size(c.type)) + "_" +
                                   std::to_string(c.channels);
                          });
+
+TEST(ImageFile, RowsOneAfterTheOtherMakeTheSameImage) {
+  const test::TempFolder folder;
+  for (const char* name : {"rows.png", "rows.tif", "rows.exr", "rows.tga"}) {
+    const bool floats = std::string_view(name).ends_with("exr");
+    const NormalMap map = flat_normal_map(7, 300, floats ? CodeType::F32 : CodeType::U8);
+    RawImage codes = map.encode();
+    for (int y = 0; y < 300; ++y) codes.row_data(y)[y % 21] = static_cast<std::uint8_t>(y / 4);
+    const NormalMap uneven(codes, map.convention());
+    write_image(folder / name, 300, [&](int y, int count) {
+      return uneven.encode_rows(y, count, codes.type(), map.convention());
+    });
+    EXPECT_TRUE(test::same_codes(read_image(folder / name), codes)) << name;
+  }
+}
 
 TEST(ImageFile, HalfFloatsKeepElevenBits) {
   const TempFolder folder;

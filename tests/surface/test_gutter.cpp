@@ -160,6 +160,22 @@ TEST(Gutter, WrapsAroundTheMap) {
   EXPECT_NEAR(position_at(mesh, found->source).x(), 0.0, 1e-6);
 }
 
+TEST(Gutter, EndsWithAMapThatDoesNotRepeat) {
+  Mesh mesh = test::plane_grid(2);
+  for (Vec2f& uv : mesh.uvs) uv = Vec2f(0.5F + 0.5F * uv.x(), 0.2F + 0.5F * uv.y());
+  const auto beyond = [&] {
+    const TexelMap map(mesh, 0, 64, 64, 4);
+    return std::count_if(map.gutter().begin(), map.gutter().end(),
+                         [](const GutterTexel& g) { return g.texel % 64 < 20; });
+  };
+  EXPECT_GT(beyond(), 100);
+  mesh.single_maps = {1};
+  EXPECT_EQ(beyond(), 0);
+  EXPECT_EQ(reading_place(mesh, 0, {0.5F, 0.25F}, 64, 64), Vec2f(0.5F, 0.25F));
+  EXPECT_GT(reading_place(mesh, 0, {0.0F, 0.5F}, 64, 64).x(), 0.5F / 64);
+  EXPECT_LT(reading_place(mesh, 0, {1.0F, 0.5F}, 64, 64).x(), 1.0F - 0.5F / 64);
+}
+
 TEST(Gutter, FoldedChartsAreBordersToo) {
   // Both halves hang together in the atlas at u = 0.5 but lie on each other left of it.
   Mesh mesh = test::mirrored_pair(3);

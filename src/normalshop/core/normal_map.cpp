@@ -188,7 +188,7 @@ std::size_t NormalMap::edited_count() const {
   return count;
 }
 
-void NormalMap::encode_edits(int y, RawImage& out) const {
+void NormalMap::encode_edits(int y, RawImage& out, int out_y) const {
   for (int x = 0; x < width(); x += tile_size) {
     const Tile* t = tile(x, y);
     if (t == nullptr) continue;
@@ -196,31 +196,33 @@ void NormalMap::encode_edits(int y, RawImage& out) const {
     const int count = std::min(tile_size, width() - x);
     for (int i = 0; i < count; ++i) {
       const std::size_t at = begin + static_cast<std::size_t>(i);
-      if (t->edited[at]) codes::encode_texels(&t->normals[at], 1, convention_, out, x + i, y);
+      if (t->edited[at]) codes::encode_texels(&t->normals[at], 1, convention_, out, x + i, out_y);
     }
   }
 }
 
-RawImage NormalMap::encode(CodeType type, const NormalConvention& convention) const {
+RawImage NormalMap::encode_rows(int first, int count, CodeType type,
+                                const NormalConvention& convention) const {
   const bool same = type == codes_->type() && convention == convention_;
   const int normal_channels = codes::normal_channels(convention);
-  RawImage out(width(), height(), std::max(codes_->channels(), normal_channels), type);
+  RawImage out(width(), count, std::max(codes_->channels(), normal_channels), type);
   std::vector<int> columns(same ? 0 : static_cast<std::size_t>(width()));
   std::iota(columns.begin(), columns.end(), 0);
-  const auto encode_rows = [&](std::size_t first, std::size_t last) {
+  const auto encode_some = [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3f> vectors(columns.size());
-    for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
+    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+      const int y = first + row;
       if (same) {
-        std::memcpy(out.row_data(y), codes_->row_data(y), codes_->row_bytes());
-        encode_edits(y, out);
+        std::memcpy(out.row_data(row), codes_->row_data(y), codes_->row_bytes());
+        encode_edits(y, out, row);
         continue;
       }
       read_vectors(y, vectors.data());
-      codes::encode_texels(vectors.data(), width(), convention, out, 0, y);
-      codes::copy_other_channels(*codes_, y, columns, out, y, normal_channels);
+      codes::encode_texels(vectors.data(), width(), convention, out, 0, row);
+      codes::copy_other_channels(*codes_, y, columns, out, row, normal_channels);
     }
   };
-  parallel_for(static_cast<std::size_t>(height()), rows_per_task, encode_rows);
+  parallel_for(static_cast<std::size_t>(count), rows_per_task, encode_some);
   return out;
 }
 

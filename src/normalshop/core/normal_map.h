@@ -100,7 +100,12 @@ class NormalMap {
 
   /// Codes of the edited map. With the map's own type and convention every unedited texel keeps its
   /// code, and channels beyond the normal's (alpha) keep theirs always. The space is not converted.
-  RawImage encode(CodeType type, const NormalConvention& convention) const;
+  RawImage encode(CodeType type, const NormalConvention& convention) const {
+    return encode_rows(0, height(), type, convention);
+  }
+  /// `count` rows of encode() from row `first` on, for who writes them out piece by piece.
+  RawImage encode_rows(int first, int count, CodeType type,
+                       const NormalConvention& convention) const;
   RawImage encode() const { return encode(codes_->type(), convention_); }
 
  private:
@@ -110,7 +115,7 @@ class NormalMap {
   };
   static std::shared_ptr<Tile> own_tile(const Tile* shared);
   Vec3f with_coded_length(const Vec3f& n) const;
-  void encode_edits(int y, RawImage& out) const;
+  void encode_edits(int y, RawImage& out, int out_y) const;
   template <class Code>
   Vec3f sample_codes(const WrappedTaps& tap) const;
   const Tile* tile(int x, int y) const;

@@ -100,13 +100,22 @@ class MapWriter {
     const std::string name = map_name(textures, "normal", extension);
     progress_.at(0.0, "encoding maps");
     check_not_input(opened_, staged_.folder() / name);
-    const RawImage codes = export_map(opened_, i, options_);
     const ImageWriteOptions how{.half_float =
                                     set.half_float && !options_.type && name.ends_with(".exr")};
-    put(name, codes, how);
     const NormalConvention convention = target_convention(map.convention(), options_.preset);
-    if (options_.mip_levels || options_.roughness)
-      write_levels(i, NormalMap(codes, convention), how);
+    const bool levels = options_.mip_levels || options_.roughness;
+    if (map.convention().space == convention.space && !levels) {
+      // Row by row: a large map is not in memory twice.
+      progress_.at(0.5, "writing maps");
+      write_image(
+          staged_.path() / name, map.height(),
+          [&](int y, int count) { return map.encode_rows(y, count, type, convention); }, how);
+      files.push_back(staged_.path() / name);
+    } else {
+      const RawImage codes = export_map(opened_, i, options_);
+      put(name, codes, how);
+      if (levels) write_levels(i, NormalMap(codes, convention), how);
+    }
     references[i].normal = map_reference(textures, "normal", extension);
     references[i].scale_applied = convention.scale != textures.normal_scale;
     if (for_viewers()) note_for_viewers(name, type, convention, notes_);

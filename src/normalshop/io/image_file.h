@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -39,6 +40,12 @@ struct ImageWriteOptions {
 /// 1 or 3 channels), .tga (8). Throws InvalidInput when the format cannot hold the image, IoError
 /// when it cannot be written.
 void write_image(const std::filesystem::path& path, const RawImage& image,
+                 const ImageWriteOptions& options = {});
+
+/// The same for an image of `height` rows that need not be in memory at once: rows(y, count) makes
+/// those from y on, from the top down.
+void write_image(const std::filesystem::path& path, int height,
+                 const std::function<RawImage(int y, int count)>& rows,
                  const ImageWriteOptions& options = {});
 
 /// Linear RGB: 8- and 16-bit codes are taken as sRGB, floats as linear. Gray is repeated, alpha

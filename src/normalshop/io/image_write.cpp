@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <string>
@@ -57,13 +58,14 @@ void check_fit(const std::filesystem::path& path, const Format& format, const Ra
                      std::string(name_of(image.type())) + " bits");
 }
 
-OIIO::ImageSpec spec_of(const Format& format, const RawImage& image,
+/// `image` may be the first rows of `height`.
+OIIO::ImageSpec spec_of(const Format& format, const RawImage& image, int height,
                         const ImageWriteOptions& options) {
   const OIIO::TypeDesc type = image.type() == CodeType::U8    ? OIIO::TypeDesc::UINT8
                               : image.type() == CodeType::U16 ? OIIO::TypeDesc::UINT16
                               : options.half_float            ? OIIO::TypeDesc::HALF
                                                               : OIIO::TypeDesc::FLOAT;
-  OIIO::ImageSpec spec(image.width(), image.height(), image.channels(), type);
+  OIIO::ImageSpec spec(image.width(), height, image.channels(), type);
   // Two channels are the x and y of a normal, not gray and alpha, where the format can say so.
   if (image.channels() == 2) spec.channelnames = {"R", "G"};
   if (image.channels() == 2) spec.alpha_channel = -1;
@@ -135,28 +137,56 @@ class CheckedFile : public OIIO::Filesystem::IOProxy {
   throw IoError("cannot write '" + path.string() + "': " + error.substr(0, error.find('\n')));
 }
 
-}  // namespace
+/// Whole chunks of rows of every format that packs several at once.
+constexpr int band_height = 256;
 
-void write_image(const std::filesystem::path& path, const RawImage& image,
-                 const ImageWriteOptions& options) {
+/// A file of `height` rows like those of `first`, which write(output, type) writes.
+template <class Write>
+void write_file_of(const std::filesystem::path& path, const RawImage& first, int height,
+                   const ImageWriteOptions& options, const Write& write) {
   const Format format = format_for(path);
-  check_fit(path, format, image);
+  check_fit(path, format, first);
   PendingFile pending(path);
   const auto output = OIIO::ImageOutput::create(format.library_name);
   if (!output) fail(path, OIIO::geterror());
-  const OIIO::ImageSpec spec = spec_of(format, image, options);
-  const OIIO::TypeDesc stored = image.type() == CodeType::U8    ? OIIO::TypeDesc::UINT8
-                                : image.type() == CodeType::U16 ? OIIO::TypeDesc::UINT16
+  const OIIO::ImageSpec spec = spec_of(format, first, height, options);
+  const OIIO::TypeDesc stored = first.type() == CodeType::U8    ? OIIO::TypeDesc::UINT8
+                                : first.type() == CodeType::U16 ? OIIO::TypeDesc::UINT16
                                                                 : OIIO::TypeDesc::FLOAT;
   CheckedFile file(pending.path());
   const bool written = file.error_code() == 0 && output->set_ioproxy(&file) &&
-                       output->open(pending.path().string(), spec) &&
-                       output->write_image(stored, image.data()) && output->close();
+                       output->open(pending.path().string(), spec) && write(*output, stored) &&
+                       output->close();
   const std::string error = output->geterror();
   file.close();
   if (file.error_code() != 0) fail(path, std::generic_category().message(file.error_code()));
   if (!written) fail(path, error);
   pending.commit();
+}
+
+}  // namespace
+
+void write_image(const std::filesystem::path& path, const RawImage& image,
+                 const ImageWriteOptions& options) {
+  write_file_of(path, image, image.height(), options,
+                [&](OIIO::ImageOutput& output, const OIIO::TypeDesc& stored) {
+                  return output.write_image(stored, image.data());
+                });
+}
+
+void write_image(const std::filesystem::path& path, int height,
+                 const std::function<RawImage(int y, int count)>& rows,
+                 const ImageWriteOptions& options) {
+  RawImage band = rows(0, std::min(height, band_height));
+  write_file_of(path, band, height, options,
+                [&](OIIO::ImageOutput& output, const OIIO::TypeDesc& stored) {
+                  for (int y = 0; y < height; y += band_height) {
+                    const int end = std::min(height, y + band_height);
+                    if (y > 0) band = rows(y, end - y);
+                    if (!output.write_scanlines(y, end, 0, stored, band.data())) return false;
+                  }
+                  return true;
+                });
 }
 
 }  // namespace normalshop
