@@ -300,7 +300,7 @@ void bench_push(const Mesh& mesh, const StorageAtlas& storage, EditMode mode) {
   compute_weight(chart, {});
   const SlopeImage change(chart.grid.width(), chart.grid.height(), Vec2f(0.02F, -0.01F));
   ChartEdit edit;
-  edit.mode = mode;
+  edit.direction = mode;
   edit.change = change;
   edit.region = change.rect();
   PushResult result;

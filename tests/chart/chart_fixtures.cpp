@@ -92,9 +92,9 @@ EditingChart chart_from(const Mesh& mesh, const StorageAtlas& storage, const Vec
   return chart;
 }
 
-ChartEdit EditImages::edit(EditMode mode) const {
+ChartEdit EditImages::edit(const EditDirection& direction) const {
   ChartEdit out;
-  out.mode = mode;
+  out.direction = direction;
   out.change = change;
   out.coverage = coverage;
   out.region = change.rect();

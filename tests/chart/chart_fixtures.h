@@ -32,7 +32,7 @@ EditingChart chart_from(const Mesh& mesh, const StorageAtlas& storage, const Vec
 struct EditImages {
   SlopeImage change;
   MaskImage coverage;
-  ChartEdit edit(EditMode mode = EditMode::View) const;
+  ChartEdit edit(const EditDirection& direction = EditMode::View) const;
 };
 /// The same change (and coverage, if above 0) everywhere in the chart.
 EditImages constant_edit(const EditingChart& chart, const Vec2f& change, float coverage = 0.0F);

@@ -81,23 +81,25 @@ std::vector<LiveCase> live_cases() {
 
 TEST(LivePush, is_after_every_dab_what_a_push_of_all_is) {
   for (LiveCase& c : live_cases()) {
-    for (const EditMode mode : {EditMode::View, EditMode::Base}) {
+    for (const EditDirection& direction :
+         {EditDirection(EditMode::View), EditDirection(EditMode::Base),
+          EditDirection(Vec3f(0.4F, -0.2F, 0.9F))}) {
       // What was edited before stays below.
       const EditingChart earlier = chart_from(c.mesh, c.storage, c.direction, 60);
       push(c.mesh, earlier, constant_edit(earlier, {0.1F, 0.0F}).edit(), c.storage);
       const EditingChart chart = chart_from(c.mesh, c.storage, c.direction, 120);
       EditImages images = constant_edit(chart, {0, 0});
-      if (mode == EditMode::Base) {
+      if (direction.mode == EditMode::Base) {
         images.coverage = MaskImage(images.change.width(), images.change.height(), 0.0F);
       }
       StorageAtlas live = c.storage;
-      LivePush pushed(c.mesh, live, chart, mode, images.change, images.coverage);
+      LivePush pushed(c.mesh, live, chart, direction, images.change, images.coverage);
       Random random(5);
       PushResult batch;
       for (int i = 0; i < 12; ++i) {
         pushed.update(dab(random, 14, images), live);
         StorageAtlas whole = c.storage;
-        batch = push(c.mesh, chart, images.edit(mode), whole);
+        batch = push(c.mesh, chart, images.edit(direction), whole);
         EXPECT_EQ(differing(live, whole), 0) << c.name << ", dab " << i;
       }
       EXPECT_GT(batch.changed, 100U) << c.name;

@@ -46,6 +46,22 @@ Hashes edit_mesh() {
   return hashes;
 }
 
+/// After edits that displace along other directions than the viewer's, seen aslant.
+Hashes edit_directions() {
+  Document plane = document(plane_grid(2), noise_map(side, CodeType::U16));
+  Hashes hashes;
+  for (const char* mode : {R"("base")", R"({"along": [0.5, -0.3, 0.8]})"}) {
+    for (const OperatorCase& one : operator_cases(1.0)) {
+      if (one.name != "pen" && one.name != "smooth" && one.name != "flatten") continue;
+      plane.apply(edit("\"operator\": \"" + one.name + R"(", "options": {)" + one.options +
+                       R"(}, "strokes": )" + one.strokes + R"(, "mode": )" + mode +
+                       R"(, "view": {"direction": [0.3, 0.2, 1]})"));
+      hashes.push_back(hash_of(map_of(plane)));
+    }
+  }
+  return hashes;
+}
+
 Hashes edit_picture(Border border) {
   ImageDocument::Images images;
   images.normals = noise_map(side, CodeType::U16);
@@ -105,6 +121,7 @@ TEST(Determinism, ThreadsDoNotMatter) {
     return run();
   };
   expect_same(edit_mesh(), on_one_thread(edit_mesh), "mesh");
+  expect_same(edit_directions(), on_one_thread(edit_directions), "directions");
   for (const Border border : {Border::Clamp, Border::Mirror, Border::Wrap}) {
     const auto run = [&] { return edit_picture(border); };
     expect_same(run(), on_one_thread(run), "picture, " + std::string(name_of(border)));
@@ -128,11 +145,14 @@ class InstructionSet {
 
 TEST(Determinism, InstructionSetsDoNotMatter) {
   const Hashes mesh = edit_mesh();
+  const Hashes directions = edit_directions();
   const Hashes picture = edit_picture(Border::Wrap);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const InstructionSet only(target);
     ASSERT_EQ(hwy::SupportedTargets(), target);
     expect_same(edit_mesh(), mesh, "mesh, " + std::string(hwy::TargetName(target)));
+    expect_same(edit_directions(), directions,
+                "directions, " + std::string(hwy::TargetName(target)));
     expect_same(edit_picture(Border::Wrap), picture,
                 "picture, " + std::string(hwy::TargetName(target)));
   }
@@ -158,6 +178,10 @@ TEST(Determinism, CodesAreThoseOfOtherMachines) {
   found.pop_back();  // the colours, in single precision, which no file holds
   expect_same(edit_mesh(), mesh, "mesh");
   expect_same(found, picture, "picture");
+  expect_same(edit_directions(),
+              {0xc7ca3b1d8025ed23, 0xbec512eaf9ede4e5, 0x812bae2cc6e65d16, 0x91e8e33dd30bdf9,
+               0x2c2f4501ed8ad15a, 0xb20d20e8024fd167},
+              "directions");
 }
 
 }  // namespace

@@ -83,6 +83,8 @@ TEST(LiveEdit, LongStrokesAcrossSeamsAreThoseOfApply) {
                      "options": {"width": 0.1, "height": 0.02, "profile": "crease"})"),
         std::string(
             R"("operator": "pen", "options": {"width": 0.2, "height": 0.03, "taper": 0.3})"),
+        std::string(R"("operator": "pen", "mode": {"along": [0.9, 0.5, -0.1]},
+                     "options": {"width": 0.2, "height": 0.05})"),
         std::string(R"("operator": "smooth",
                      "options": {"sigma": 0.02, "area": "brush", "brush": 0.15})"),
         std::string(R"("operator": "denoise",

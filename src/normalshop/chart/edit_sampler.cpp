@@ -48,11 +48,21 @@ float EditSampler::coverage_at(float x, float y) const {
   return std::clamp(sum, 0.0F, 1.0F);
 }
 
+/// Beside a hard edge the weight may be that of the other side.
+void EditSampler::drop_averted(TexelBatch& batch) const {
+  for (int i = 0; i < batch.count; ++i) {
+    const Vec3f base = batch.base.get(i);
+    const float facing = base.dot(edit_.direction.along);
+    if (!(facing > grazing_cosine * base.norm())) batch.weight[static_cast<std::size_t>(i)] = 0.0F;
+  }
+}
+
 bool EditSampler::read(TexelBatch& batch) const {
   return read_visible_weight(reach_, batch) && read_weighed(batch);
 }
 
 bool EditSampler::read_weighed(TexelBatch& batch) const {
+  if (edit_.direction.mode == EditMode::Along) drop_averted(batch);
   read_change(edit_.change, edit_.change.rect(), batch);
   batch.covered.fill(0.0F);
   bool any = false;

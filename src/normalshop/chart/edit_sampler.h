@@ -20,7 +20,7 @@ class EditSampler {
 
   const EditReach& reach() const { return reach_; }
   const ChartGrid& grid() const { return reach_.grid(); }
-  EditMode mode() const { return edit_.mode; }
+  const EditDirection& direction() const { return edit_.direction; }
   /// Fills weight, change_x, change_y and covered of the batch's points. False, and not all is
   /// filled, when nothing happens at any of them.
   bool read(TexelBatch& batch) const;
@@ -30,6 +30,7 @@ class EditSampler {
  private:
   EditSampler(const EditingChart& chart, const ChartEdit& edit, EditReach reach);
   static bool acts(const ChartEdit& edit, int x, int y);
+  void drop_averted(TexelBatch& batch) const;
   float coverage_at(float x, float y) const;
 
   const ChartEdit& edit_;

@@ -14,8 +14,24 @@ struct EffectiveOptions {
   bool operator==(const EffectiveOptions&) const = default;
 };
 
+/// The weight that the angles give for a cosine between base normal and a direction.
+class FacingWeight {
+ public:
+  explicit FacingWeight(const EffectiveOptions& options);
+  float operator()(float cosine) const;
+
+ private:
+  float low_;
+  float high_;
+};
+
 /// Fills chart.weight from chart.ids and chart.base_normal, which must be of the grid's size. A
 /// border of the surface against nothing is no depth step: an edit may run to the rim.
 void compute_weight(EditingChart& chart, const EffectiveOptions& options);
+
+/// Lowers chart.weight to what the same angles give between base normal and another direction
+/// (unit, chart axes). False when that takes away all there is within a rectangle.
+bool limit_weight(EditingChart& chart, const EffectiveOptions& options, const Vec3f& direction,
+                  const Rect& within);
 
 }  // namespace normalshop

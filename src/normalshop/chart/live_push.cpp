@@ -8,9 +8,9 @@
 namespace normalshop {
 
 struct LivePush::State {
-  State(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart, EditMode mode,
-        SlopeView change, MaskView coverage)
-      : edit{mode, change, coverage, chart.weight.rect()},
+  State(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
+        const EditDirection& direction, SlopeView change, MaskView coverage)
+      : edit{direction, change, coverage, chart.weight.rect()},
         sampler(EditSampler::growing(chart, edit)),
         everywhere(chart, chart.weight.rect(), [](int, int) { return true; }) {
     for (std::size_t i = 0; i < storage.sets.size(); ++i) {
@@ -26,8 +26,8 @@ struct LivePush::State {
 };
 
 LivePush::LivePush(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
-                   EditMode mode, SlopeView change, MaskView coverage)
-    : state_(std::make_unique<State>(mesh, storage, chart, mode, change, coverage)) {}
+                   const EditDirection& direction, SlopeView change, MaskView coverage)
+    : state_(std::make_unique<State>(mesh, storage, chart, direction, change, coverage)) {}
 
 LivePush::~LivePush() = default;
 

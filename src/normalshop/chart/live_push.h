@@ -26,8 +26,8 @@ class LivePush {
  public:
   /// The storage is the one before the edit; the chart has its weight and must stay as it is.
   /// `change` and `coverage` (may be empty) have its size: they are read by each update().
-  LivePush(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart, EditMode mode,
-           SlopeView change, MaskView coverage);
+  LivePush(const Mesh& mesh, const StorageAtlas& storage, const EditingChart& chart,
+           const EditDirection& direction, SlopeView change, MaskView coverage);
   ~LivePush();
   LivePush(const LivePush&) = delete;
   LivePush& operator=(const LivePush&) = delete;

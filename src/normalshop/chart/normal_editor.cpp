@@ -17,7 +17,7 @@ bool NormalEditor::edit_weighed(TexelLanes& lanes) const {
   if (!sampler_.read_weighed(lanes.batch)) return false;
   fill_frames(mesh_, sampler_.grid().view, space_, lanes.triangles, lanes.batch);
   read_stored(before_, lanes);
-  apply(sampler_.mode(), lanes.batch);
+  apply(sampler_.direction(), lanes.batch);
   return true;
 }
 
@@ -86,7 +86,7 @@ void NormalEditor::edit_gutter(const PerLane<const GutterTexel*>& items, Triangl
     const Vec3f own = own_vector(x, y, batch.base.get(i), frame);
     batch.stored.set(i, gutter_vector(g, frame, own, source, strength));
   }
-  apply(sampler_.mode(), batch);
+  apply(sampler_.direction(), batch);
   collect(batch, items, out);
 }
 
@@ -100,7 +100,7 @@ void NormalEditor::edit_shared(const PerLane<const SharedTexel*>& items, TexelBa
     batch.stored.set(i, before_.vector(x, y));
   }
   fill_frames(mesh_, sampler_.grid().view, space_, ids, batch);
-  apply(sampler_.mode(), batch);
+  apply(sampler_.direction(), batch);
   collect(batch, items, out);
 }
 

@@ -9,13 +9,13 @@ namespace normalshop {
 ///
 ///     texel' = texel + weight * (coverage * (base - texel) + change)
 ///
-/// in the two numbers of `mode`. An edit that adds has no coverage; one that ignores or replaces
-/// the details under it covers them.
+/// in the two numbers of `direction`. An edit that adds has no coverage; one that ignores or
+/// replaces the details under it covers them.
 struct ChartEdit {
-  EditMode mode = EditMode::View;
-  SlopeView change;   ///< size of the chart
-  MaskView coverage;  ///< 0 to 1; empty: 0 everywhere
-  Rect region;        ///< outside, change and coverage are 0
+  EditDirection direction;  ///< in chart axes
+  SlopeView change;         ///< size of the chart
+  MaskView coverage;        ///< 0 to 1; empty: 0 everywhere
+  Rect region;              ///< outside, change and coverage are 0
 };
 
 struct PushResult {

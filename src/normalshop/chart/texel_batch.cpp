@@ -131,22 +131,33 @@ HWY_INLINE V3 after_view_edit(const V3& before, const V3& base, const Edit2& e) 
   return beyond_horizon(beyond, before, unit({hn::Neg(x), hn::Neg(y), one}), after, e);
 }
 
-HWY_INLINE V3 after_base_edit(const V3& before, const V3& base, const Edit2& e) {
+/// normal_from_gradient(); `facing` = <base, d>.
+HWY_INLINE V3 displaced(V h_x, V h_y, const V3& base, const V3& d, V facing) {
+  const V turned = hn::Add(hn::Mul(h_x, d.x), hn::Mul(h_y, d.y));
+  return unit({hn::Sub(base.x, hn::Sub(hn::Mul(h_x, facing), hn::Mul(turned, base.x))),
+               hn::Sub(base.y, hn::Sub(hn::Mul(h_y, facing), hn::Mul(turned, base.y))),
+               hn::Add(base.z, hn::Mul(turned, base.z))});
+}
+
+/// `fixed`: along d; otherwise d is the base normal.
+HWY_INLINE V3 after_displacement(const V3& before, const V3& base, bool fixed, const V3& d,
+                                 const Edit2& e) {
   const V least = hn::Set(D(), min_cosine);
+  const V one = hn::Set(D(), 1.0F);
   const V along = dot(before, base);
+  const V toward = fixed ? dot(before, d) : along;
+  const V facing = fixed ? dot(base, d) : one;
   const V3 in_plane = sum(before, scaled(base, hn::Neg(along)));
-  const V3 sg = scaled(in_plane, hn::Div(hn::Set(D(), -1.0F), hn::Max(along, least)));
+  const V3 sg = scaled(in_plane, hn::Div(hn::Set(D(), -1.0F), hn::Max(toward, least)));
   const V z = hn::Div(sg.z, hn::Max(base.z, least));
-  const V kept = hn::Sub(hn::Set(D(), 1.0F), e.covered);
-  const V h_x = hn::Add(hn::Mul(hn::Sub(sg.x, hn::Mul(base.x, z)), kept), e.change_x);
-  const V h_y = hn::Add(hn::Mul(hn::Sub(sg.y, hn::Mul(base.y, z)), kept), e.change_y);
-  const V turned = hn::Add(hn::Mul(h_x, base.x), hn::Mul(h_y, base.y));
-  const V3 after = unit({hn::Sub(base.x, hn::Sub(h_x, hn::Mul(turned, base.x))),
-                         hn::Sub(base.y, hn::Sub(h_y, hn::Mul(turned, base.y))),
-                         hn::Add(base.z, hn::Mul(turned, base.z))});
-  const auto beyond = hn::Lt(along, least);
+  const V x = hn::Sub(sg.x, hn::Mul(base.x, z));
+  const V y = hn::Sub(sg.y, hn::Mul(base.y, z));
+  const V kept = hn::Sub(one, e.covered);
+  const V3 after = displaced(hn::Add(hn::Mul(x, kept), e.change_x),
+                             hn::Add(hn::Mul(y, kept), e.change_y), base, d, facing);
+  const auto beyond = hn::Lt(toward, least);
   if (HWY_LIKELY(hn::AllFalse(D(), beyond))) return after;
-  return beyond_horizon(beyond, before, unit(sum(base, scaled(sg, hn::Set(D(), -1.0F)))), after, e);
+  return beyond_horizon(beyond, before, displaced(x, y, base, d, facing), after, e);
 }
 
 /// The detailed normal; the base normal where the code holds no direction.
@@ -161,7 +172,7 @@ HWY_INLINE V3 before_edit(const V3& t, const V3& b, const V3& n, const V3& store
   return {select(usable, v.x, base.x), select(usable, v.y, base.y), select(usable, v.z, base.z)};
 }
 
-void apply_lanes(EditMode mode, TexelBatch& batch, std::size_t i) {
+void apply_lanes(const EditDirection& direction, TexelBatch& batch, std::size_t i) {
   const D d;
   const Edit2 edit{hn::Load(d, &batch.change_x[i]), hn::Load(d, &batch.change_y[i]),
                    hn::Load(d, &batch.covered[i])};
@@ -172,8 +183,12 @@ void apply_lanes(EditMode mode, TexelBatch& batch, std::size_t i) {
   const V3 n = load(batch.normal, i);
   const V3 base = unit(load(batch.base, i));
   const V3 before = before_edit(t, b, n, load(batch.stored, i), base);
-  const V3 after = mode == EditMode::View ? after_view_edit(before, base, edit)
-                                          : after_base_edit(before, base, edit);
+  const bool fixed = direction.mode == EditMode::Along;
+  const V3 along{hn::Set(d, direction.along.x()), hn::Set(d, direction.along.y()),
+                 hn::Set(d, direction.along.z())};
+  const V3 after = direction.mode == EditMode::View
+                       ? after_view_edit(before, base, edit)
+                       : after_displacement(before, base, fixed, fixed ? along : base, edit);
   const V3 moved = sum(after, scaled(before, hn::Set(d, -1.0F)));
   hn::Store(hn::Mul(hn::Set(d, 0.5F), dot(moved, moved)), d, &batch.turn[i]);
   // MikkTSpace's exact inverse: by the frame's cofactors.
@@ -183,10 +198,10 @@ void apply_lanes(EditMode mode, TexelBatch& batch, std::size_t i) {
   store(scaled(v, side), batch.result, i);
 }
 
-void apply_all(EditMode mode, TexelBatch& batch) {
+void apply_all(const EditDirection& direction, TexelBatch& batch) {
   const std::size_t lanes = hn::Lanes(D());
   for (std::size_t i = 0; i < static_cast<std::size_t>(batch.count); i += lanes) {
-    apply_lanes(mode, batch, i);
+    apply_lanes(direction, batch, i);
   }
 }
 
@@ -243,7 +258,9 @@ void finish_frames(TexelBatch& batch) {
   }
 }
 
-void apply(EditMode mode, TexelBatch& batch) { HWY_DYNAMIC_DISPATCH(apply_all)(mode, batch); }
+void apply(const EditDirection& direction, TexelBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(apply_all)(direction, batch);
+}
 
 }  // namespace normalshop
 #endif

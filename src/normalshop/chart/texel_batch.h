@@ -98,6 +98,6 @@ void finish_frames(TexelBatch& batch);
 /// normal_from_gradient() and the exact inverse of the frame. A texel whose stored vector has no
 /// direction counts as undetailed; one beyond the horizon of the edit's direction stays as far
 /// beyond it.
-void apply(EditMode mode, TexelBatch& batch);
+void apply(const EditDirection& direction, TexelBatch& batch);
 
 }  // namespace normalshop

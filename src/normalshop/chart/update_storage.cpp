@@ -168,9 +168,9 @@ Vec3f TileUpdate::edited_normal(std::size_t pixel) const {
   const float covered = edit_.coverage.empty() ? 0.0F : weight * edit_.coverage(x, y);
   const Vec2f change = weight * edit_.change(x, y);
   if (!(std::abs(change.x()) + std::abs(change.y()) + covered > 0.0F)) return before;
-  const Vec2f own = gradient_from_normal(before, base, edit_.mode);
-  const Vec2f after = own + covered * (base_gradient(base, edit_.mode) - own) + change;
-  const Vec3f n = normal_from_gradient(after, base, edit_.mode);
+  const Vec2f own = gradient_from_normal(before, base, edit_.direction);
+  const Vec2f after = own + covered * (base_gradient(base, edit_.direction) - own) + change;
+  const Vec3f n = normal_from_gradient(after, base, edit_.direction);
   return n.allFinite() ? n : before;
 }
 

@@ -18,9 +18,6 @@ using V = hn::Vec<D>;
 using VI = hn::Vec<DI>;
 using M = hn::Mask<D>;
 
-/// Below this cosine to the viewing direction a point is left alone, whatever the weight says.
-constexpr float grazing = 0.05F;
-
 /// Points of the front side, in marked blocks.
 HWY_INLINE M active_points(const Image<std::int32_t>& blocks, const TexelBatch& batch,
                            std::size_t i) {
@@ -30,8 +27,9 @@ HWY_INLINE M active_points(const Image<std::int32_t>& blocks, const TexelBatch& 
   const V by = hn::Load(d, &batch.base.y[i]);
   const V bz = hn::Load(d, &batch.base.z[i]);
   const V squared = hn::Add(hn::Add(hn::Mul(bx, bx), hn::Mul(by, by)), hn::Mul(bz, bz));
-  const M front = hn::And(hn::Gt(bz, hn::Zero(d)),
-                          hn::Gt(hn::Mul(bz, bz), hn::Mul(hn::Set(d, grazing * grazing), squared)));
+  const M front = hn::And(
+      hn::Gt(bz, hn::Zero(d)),
+      hn::Gt(hn::Mul(bz, bz), hn::Mul(hn::Set(d, grazing_cosine * grazing_cosine), squared)));
   const V x = hn::Load(d, &batch.point.x[i]);
   const V y = hn::Load(d, &batch.point.y[i]);
   const V least = hn::Set(d, -1.0F);

@@ -54,11 +54,11 @@ void fit(const Mesh& mesh, std::span<const SeamEdge> seams, float kept, NormalMa
 }
 
 /// The normals, by whatever way the transfer says.
-void push_normals(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
-                  PreparedEdit& prepared, StorageAtlas& storage) {
+void push_normals(const Mesh& mesh, std::span<const SeamEdge> seams, PreparedEdit& prepared,
+                  StorageAtlas& storage) {
   const EditingChart& chart = prepared.chart;
   EditReport& report = prepared.report;
-  const ChartEdit change = prepared.change(edit.mode);
+  const ChartEdit change = prepared.change();
   if (report.transfer.update == Update::Gather) {
     const std::vector<NormalMap> before = copies(storage);
     report.pushed = push(mesh, chart, change, storage);
@@ -73,7 +73,7 @@ void push_prepared(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge>
                    PreparedEdit& prepared, StorageAtlas& storage) {
   Stopwatch watch;
   if (edit.strength > 0.0F) {
-    push_normals(edit, mesh, seams, prepared, storage);
+    push_normals(mesh, seams, prepared, storage);
     const ColorResult& colors = prepared.colors;
     if (!colors.change.empty()) {
       prepared.report.colors_changed =
@@ -106,6 +106,13 @@ void add(const EditReport& other, EditReport& report) {
   report.times.push += other.times.push;
 }
 
+PreparedEdit prepare_facing(const Edit& edit, const View& view, const Mesh& mesh,
+                            const StorageAtlas& storage, const TransferOptions& transfer) {
+  PreparedEdit prepared = prepare_edit(edit, view, mesh, storage, transfer);
+  if (!prepared.faces) fail_averted(edit);
+  return prepared;
+}
+
 /// All views see what was there before any of them; their mean is stored at once.
 EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const Mesh& mesh,
                             std::span<const SeamEdge> seams, SurfaceCover& cover,
@@ -128,14 +135,18 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
   }
   EditReport report;
   report.times.pull = watch.lap();
+  bool faces = false;
   SurfaceBlend blend(storage);
   for (const CoverView& view : cover.views) {
     PreparedEdit prepared = prepare_edit(edit, view, mesh, storage);
     watch.lap();
-    if (edit.strength > 0.0F) blend.add(mesh, prepared.chart, prepared.change(edit.mode), storage);
+    if (!prepared.faces) continue;
+    faces = true;
+    if (edit.strength > 0.0F) blend.add(mesh, prepared.chart, prepared.change(), storage);
     prepared.report.times.push = watch.lap();
     add(prepared.report, report);
   }
+  if (!faces) fail_averted(edit);
   // What reaches all of the surface leaves no seam, either.
   const std::vector<NormalMap> before = copies(storage);
   report.pushed = blend.write(storage);
@@ -162,12 +173,14 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
                        "write its values over the other's");
   }
   const View view = resolve(edit.view, mesh);
-  PreparedEdit side = prepare_edit(edit, view, mesh, storage, transfer);
+  PreparedEdit side = prepare_facing(edit, view, mesh, storage, transfer);
   std::optional<PreparedEdit> other;  // before any push: both see what was there, and throw in time
   if (edit.mirror) {
     const View image = mirrored(view, static_cast<int>(edit.mirror->axis), edit.mirror->at);
+    Edit opposite = edit;
+    opposite.along[static_cast<int>(edit.mirror->axis)] *= -1.0F;
     try {
-      other = prepare_edit(edit, image, mesh, storage, transfer);
+      other = prepare_facing(opposite, image, mesh, storage, transfer);
     } catch (const InvalidInput& error) {
       throw InvalidInput(edit.path + ".mirror: on the other side, " + error.what());
     }

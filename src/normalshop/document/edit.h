@@ -62,6 +62,7 @@ struct Edit {
   std::shared_ptr<const EditOperator> operation;
   ViewSpec view = NamedView::Front;
   EditMode mode = EditMode::View;
+  Vec3f along = Vec3f::UnitZ();  ///< of EditMode::Along: in object space, of any length
   DetailsRule details = DetailsRule::Keep;
   float strength = 1.0F;
   EffectiveAngles effective;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "normalshop/chart/details.h"
+#include "normalshop/chart/effective.h"
 #include "normalshop/chart/extend.h"
 #include "normalshop/core/error.h"
 #include "normalshop/core/for_pixels.h"
@@ -94,12 +96,31 @@ Rect choose_window(const EditOperator& operation, const Rect& changed, Border bo
 
 /// An edit on the lattice of whole pixels.
 struct Placed {
-  Edit edit;        ///< points count from the lattice's origin; in a tile, with repeated strokes
+  Edit edit;  ///< points count from the lattice's origin; in a tile, with repeated strokes
+  EditDirection direction;
   EditPlace place;  ///< likewise
   Extent picture;   ///< as the user counts it, for messages
   Rect window;      ///< pixels of the picture
   ChartGrid grid;   ///< the same window on the lattice
 };
+
+/// The base surface is the plane of the picture: its normal is the viewing direction.
+EditDirection direction_of(const Edit& edit) {
+  if (edit.mode != EditMode::Along) return EditMode::View;
+  return EditDirection(edit.along);
+}
+
+/// How far an edit arrives in the plane.
+float facing_of(const Edit& edit, const EditDirection& direction) {
+  if (direction.mode != EditMode::Along) return 1.0F;
+  const float facing =
+      FacingWeight({edit.effective.full, edit.effective.zero})(direction.along.z());
+  if (facing > 0.0F) return facing;
+  throw InvalidInput(edit.path +
+                     ".mode.along must point out of the picture: its z must be above 0, and the "
+                     "angle to [0, 0, 1] below " +
+                     std::to_string(std::lround(edit.effective.zero)) + " degrees");
+}
 
 Placed place(const Edit& edit, const ImageDocument::Images& images) {
   const int width = images.normals.width();
@@ -111,7 +132,7 @@ Placed place(const Edit& edit, const ImageDocument::Images& images) {
   const Vec2f half_view(0.5F * view.width, 0.5F * view.height);
   const Vec2f half(0.5F * static_cast<float>(width), 0.5F * static_cast<float>(height));
 
-  Placed out{edit, {}, {-half - center, half - center}, {}, {}};
+  Placed out{edit, direction_of(edit), {}, {-half - center, half - center}, {}, {}};
   for (UnitStroke& stroke : out.edit.strokes) {
     for (UnitPoint& p : stroke) p.position -= origin;
   }
@@ -143,21 +164,24 @@ EditingChart pull_weight(const ImageDocument::Images& images, const Placed& plac
   chart.grid = placed.grid;
   chart.weight.resize(window.width(), window.height());
   const bool masked = !images.mask.empty();
+  const float facing = facing_of(placed.edit, placed.direction);
   for_pixels(chart.weight.rect(), [&](int x, int y) {
     const Vec3f n = images.normals.normal(window.x0 + x, window.y0 + y);
     const float mask = masked ? images.mask(window.x0 + x, window.y0 + y) : 1.0F;
-    chart.weight(x, y) = n.isZero() ? 0.0F : mask;
+    chart.weight(x, y) = n.isZero() ? 0.0F : std::min(mask, facing);
   });
   return chart;
 }
 
 /// The slopes of the window, continued where they don't count; without details those of the plane.
-SlopeImage pull_slopes(const NormalMap& normals, const Rect& window, DetailsRule details,
+SlopeImage pull_slopes(const NormalMap& normals, const Placed& placed, DetailsRule details,
                        MaskView weight) {
+  const Rect& window = placed.window;
   SlopeImage slopes(window.width(), window.height(), Vec2f(0.0F, 0.0F));
   if (details == DetailsRule::Ignore) return slopes;
   for_pixels(slopes.rect(), [&](int x, int y) {
-    slopes(x, y) = slope_from_normal(normals.normal(window.x0 + x, window.y0 + y));
+    const Vec3f n = normals.normal(window.x0 + x, window.y0 + y);
+    slopes(x, y) = gradient_from_normal(n, Vec3f::UnitZ(), placed.direction);
   });
   extend(weight, slopes);
   return slopes;
@@ -170,17 +194,18 @@ struct Pushed {
 
 /// texel' = texel + weight * (change - coverage * texel), as chart/push.h has it; the base is flat.
 Pushed push_row(const OperatorResult& result, MaskView weight, bool covers, int y,
-                const Rect& window, NormalMap& normals) {
+                const Placed& placed, NormalMap& normals) {
+  const Rect& window = placed.window;
   Pushed pushed;
   for (int x = result.region.x0; x < result.region.x1; ++x) {
     const Vec2f change = result.change(x, y);
     const float coverage = covers ? result.coverage(x, y) : 0.0F;
     if (weight(x, y) <= 0.0F || (change.isZero(0.0F) && coverage == 0.0F)) continue;
     const Vec3f before = normals.normal(window.x0 + x, window.y0 + y);
-    const Vec2f slope = slope_from_normal(before);
+    const Vec2f slope = gradient_from_normal(before, Vec3f::UnitZ(), placed.direction);
     const Vec2f after = slope + weight(x, y) * (change - coverage * slope);
     if (after == slope || !after.allFinite()) continue;
-    const Vec3f n = normal_from_slope(after);
+    const Vec3f n = normal_from_gradient(after, Vec3f::UnitZ(), placed.direction);
     normals.set_normal(window.x0 + x, window.y0 + y, n);
     ++pushed.changed;
     pushed.farthest = std::max(pushed.farthest, (n - before).squaredNorm());
@@ -194,7 +219,8 @@ float angle_of_chord(float squared) {
 
 /// Rows of tiles are independent of each other.
 PushResult push_window(const OperatorResult& result, MaskView weight, bool covers,
-                       const Rect& window, NormalMap& normals) {
+                       const Placed& placed, NormalMap& normals) {
+  const Rect& window = placed.window;
   const Rect& region = result.region;
   PushResult all;
   if (region.empty()) return all;
@@ -208,7 +234,7 @@ PushResult push_window(const OperatorResult& result, MaskView weight, bool cover
     const int bottom = (first + static_cast<int>(b)) * NormalMap::tile_size - window.y0;
     Pushed sum;
     for (int y = std::max(top, region.y0); y < std::min(bottom, region.y1); ++y) {
-      const Pushed row = push_row(result, weight, covers, y, window, normals);
+      const Pushed row = push_row(result, weight, covers, y, placed, normals);
       sum.changed += row.changed;
       sum.farthest = std::max(sum.farthest, row.farthest);
     }
@@ -280,14 +306,14 @@ EditReport ImageDocument::apply(const Edit& edit) {
   check_on_surface(placed.edit, {input.strokes.begin(), own}, chart, input.region, placed.picture);
   SlopeImage slopes;
   if (edit.operation->reads()) {
-    slopes = pull_slopes(images_.normals, placed.window, edit.details, weight);
+    slopes = pull_slopes(images_.normals, placed, edit.details, weight);
     input.source = slopes;
     input.validity = weight;
   }
   SlopeImage seen;
   if (edit.operation->picks()) {
     const bool shared = !slopes.empty() && edit.details == DetailsRule::Keep;
-    if (!shared) seen = pull_slopes(images_.normals, placed.window, DetailsRule::Keep, weight);
+    if (!shared) seen = pull_slopes(images_.normals, placed, DetailsRule::Keep, weight);
     input.seen = shared ? slopes.view() : seen.view();
     input.validity = weight;
   }
@@ -308,7 +334,7 @@ EditReport ImageDocument::apply(const Edit& edit) {
     const bool covers = edit.details == DetailsRule::Ignore;
     if (!input.colors.empty() && edit.operation->moves_colors())
       report.colors_changed = apply_colors(edit, input, weight, placed.window, images_.colors);
-    report.pushed = push_window(result, weight, covers, placed.window, images_.normals);
+    report.pushed = push_window(result, weight, covers, placed, images_.normals);
   }
   report.times.push = watch.lap();
   report.views = 1;

@@ -23,6 +23,12 @@ View one_view(const Edit& edit, const Mesh& mesh) {
   return resolve(edit.view, mesh);
 }
 
+OpenChart open_facing(const Edit& edit, const View& view, const Document& document) {
+  OpenChart open = open_chart(edit, view, document.mesh(), document.storage());
+  if (!open.faces) fail_averted(edit);
+  return open;
+}
+
 Edit with_window(Edit edit) {
   edit.window = ChartWindow::View;
   return edit;
@@ -35,9 +41,9 @@ struct LiveEdit::State {
       : document(owner),
         edit(with_window(std::move(begun))),
         view(one_view(edit, owner.mesh())),
-        open(open_chart(edit, view, owner.mesh(), owner.storage())),
+        open(open_facing(edit, view, owner)),
         result(empty_result(open.chart.grid.width(), open.chart.grid.height())),
-        push(owner.mesh(), owner.storage(), open.chart, edit.mode, result.change,
+        push(owner.mesh(), owner.storage(), open.chart, open.direction, result.change,
              open.source.replaces ? result.coverage.view() : MaskView()) {}
 
   Document& document;

@@ -56,15 +56,16 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, 
 }
 
 /// The base surface's numbers, continued past its borders.
-SlopeImage base_slopes(const EditingChart& chart, EditMode mode) {
+SlopeImage base_slopes(const EditingChart& chart, const EditDirection& direction) {
   SlopeImage base(chart.grid.width(), chart.grid.height());
   for_pixels(base.rect(),
-             [&](int x, int y) { base(x, y) = base_gradient(chart.base_normal(x, y), mode); });
+             [&](int x, int y) { base(x, y) = base_gradient(chart.base_normal(x, y), direction); });
   extend(chart.weight, base);
   return base;
 }
 
-void read_details(const Edit& edit, const EditingChart& chart, ChartSource& source) {
+void read_details(const Edit& edit, const EditingChart& chart, const EditDirection& direction,
+                  ChartSource& source) {
   const int width = chart.grid.width();
   const int height = chart.grid.height();
   const bool ignore = edit.details == DetailsRule::Ignore;
@@ -79,10 +80,10 @@ void read_details(const Edit& edit, const EditingChart& chart, ChartSource& sour
         // Steep slopes beside rims and steps would else outweigh the surface around them.
         source.validity(x, y) = chart.weight(x, y);
         const bool valid = chart.weight(x, y) > 0.0F;
-        const Vec2f below = valid ? base_gradient(base, edit.mode) : Vec2f(0.0F, 0.0F);
+        const Vec2f below = valid ? base_gradient(base, direction) : Vec2f(0.0F, 0.0F);
         Vec2f details = below;
         if (valid && (!ignore || with_seen)) {
-          details = gradient_from_normal(chart.normal(x, y), base, edit.mode);
+          details = gradient_from_normal(chart.normal(x, y), base, direction);
         }
         source.slopes(x, y) = ignore ? below : details;
         if (with_seen) source.seen(x, y) = details;
@@ -93,15 +94,16 @@ void read_details(const Edit& edit, const EditingChart& chart, ChartSource& sour
   extend(source.validity, source.slopes);
 }
 
-ChartSource make_source(const Edit& edit, const EditingChart& chart) {
+ChartSource make_source(const Edit& edit, const EditingChart& chart,
+                        const EditDirection& direction) {
   ChartSource source;
   const bool ignore = edit.details == DetailsRule::Ignore;
   const EditOperator& operation = *edit.operation;
-  if (operation.reads() || operation.picks()) read_details(edit, chart, source);
+  if (operation.reads() || operation.picks()) read_details(edit, chart, direction, source);
   source.finer = ignore ? 0.0F : operation.removes_finer(chart.grid.pixel);
   const bool turns = source.finer > 0.0F || !source.grazing.empty();
   source.replaces = ignore || turns;
-  if (operation.reads_base() || turns) source.base = base_slopes(chart, edit.mode);
+  if (operation.reads_base() || turns) source.base = base_slopes(chart, direction);
   return source;
 }
 
@@ -144,10 +146,16 @@ EditPlace find_place(const Edit& edit, const CoverView& cover, const Bounds& box
   return place;
 }
 
+/// In chart axes.
+EditDirection direction_of(const Edit& edit, const View& view) {
+  if (edit.mode != EditMode::Along) return edit.mode;
+  return EditDirection(view.to_chart(edit.along));
+}
+
 /// Reads what the operator needs, and lets go of the rest.
 void open_source(const Edit& edit, OpenChart& open) {
   EditingChart& chart = open.chart;
-  open.source = make_source(edit, chart);
+  open.source = make_source(edit, chart, open.direction);
   if (open.report.transfer.update == Update::Gather) {
     chart.normal = {};
     chart.base_normal = {};
@@ -178,6 +186,11 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
                            choose_grid(edit, view, shown, open.place.model, texel), box.diagonal(),
                            transfer);
   const ChartGrid& grid = open.chart.grid;
+  open.direction = direction_of(edit, view);
+  if (edit.mode == EditMode::Along) {
+    open.faces = limit_weight(open.chart, effective_options(edit.effective, box.diagonal()),
+                              open.direction.along, make_input(edit, grid, open.place).region);
+  }
   EditReport& report = open.report;
   report.transfer = transfer;
   report.views = 1;
@@ -186,6 +199,7 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
   report.pixel = grid.pixel;
   report.coarser_than_texels = grid.pixel > 1.01F * texel;
   report.times.pull = watch.lap();
+  if (!open.faces) return open;
   open_source(edit, open);
   report.times.operate = watch.lap();
   return open;
@@ -193,10 +207,13 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
 
 PreparedEdit finish(const Edit& edit, OpenChart open) {
   Stopwatch watch;
+  PreparedEdit prepared;
+  prepared.direction = open.direction;
+  prepared.faces = open.faces;
+  if (!open.faces) return prepared;
   const OperatorInput input = operator_input(edit, open);
   EditingChart& chart = open.chart;
   check_on_surface(edit, input.strokes, chart, input.region, open.place.model);
-  PreparedEdit prepared;
   prepared.result = empty_result(chart.grid.width(), chart.grid.height());
   operate(edit, open, input, prepared.result);
   prepared.replaces = open.source.replaces;
@@ -222,6 +239,12 @@ EffectiveOptions effective_options(const EffectiveAngles& angles, float model_si
 OpenChart open_chart(const Edit& edit, const View& view, const Mesh& mesh,
                      const StorageAtlas& storage, const TransferOptions& transfer) {
   return open_chart(edit, whole(view), mesh, storage, transfer);
+}
+
+void fail_averted(const Edit& edit) {
+  throw InvalidInput(edit.path +
+                     ".mode.along must point out of surface that the edit's view shows, as from "
+                     "inside the model towards the eye: none there faces it");
 }
 
 OperatorInput operator_input(const Edit& edit, const OpenChart& open) {

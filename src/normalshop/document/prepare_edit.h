@@ -28,12 +28,17 @@ struct OpenChart {
   EditingChart chart;
   EditPlace place;
   ChartSource source;
+  EditDirection direction;  ///< in chart axes
+  /// False: nothing that the view shows faces edit.along. Then there is no source.
+  bool faces = true;
   EditReport report;
 };
 
 /// Throws InvalidInput, naming the field, for what does not fit the surface that the view shows.
 OpenChart open_chart(const Edit& edit, const View& view, const Mesh& mesh,
                      const StorageAtlas& storage, const TransferOptions& transfer = {});
+/// Says that an edit's direction meets no surface that faces it.
+[[noreturn]] void fail_averted(const Edit& edit);
 /// All that the operator gets to see.
 OperatorInput operator_input(const Edit& edit, const OpenChart& open);
 /// Fills the result, which is 0 there, in input.region.
@@ -47,11 +52,14 @@ struct PreparedEdit {
   EditingChart chart;  ///< what the update needs
   OperatorResult result;
   ColorResult colors;
+  EditDirection direction;
   bool replaces = false;  ///< the result's coverage counts
+  /// False: nothing that the view shows faces edit.along. Then there is no result.
+  bool faces = true;
   EditReport report;
 
-  ChartEdit change(EditMode mode) const {
-    ChartEdit edit{mode, result.change, {}, result.region};
+  ChartEdit change() const {
+    ChartEdit edit{direction, result.change, {}, result.region};
     if (replaces) edit.coverage = result.coverage;
     return edit;
   }

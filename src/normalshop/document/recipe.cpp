@@ -142,6 +142,26 @@ void check_for_surface(const Edit& edit, const FieldReader& reader) {
   }
 }
 
+void read_mode(const FieldReader& reader, Edit& edit) {
+  const std::vector<std::string_view> names{name_of(EditMode::View), name_of(EditMode::Base)};
+  if (reader.value().text() != nullptr) {
+    edit.mode = static_cast<EditMode>(reader.one_of(names));
+    return;
+  }
+  if (reader.value().object() == nullptr) {
+    reader.fail(join_names(names) + ", or an object with \"along\"");
+  }
+  const std::string_view along = name_of(EditMode::Along);
+  reader.only({along});
+  edit.mode = EditMode::Along;
+  edit.along = direction_field(reader.required(along));
+}
+
+Value mode_value(const Edit& edit) {
+  if (edit.mode != EditMode::Along) return name_of(edit.mode);
+  return Value::Object{{std::string(name_of(edit.mode)), vec3_value(edit.along)}};
+}
+
 Edit read_edit(const FieldReader& reader, Assets& assets) {
   reader.only({"operator", "view", "mode", "details", "strength", "effective", "window", "options",
                "strokes", "mirror", "comment"});
@@ -151,9 +171,7 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   edit.view = read_view(reader.required("view"));
   // Several views have no direction in common.
   if (std::holds_alternative<SurfaceView>(edit.view)) edit.mode = EditMode::Base;
-  if (reader.has("mode")) {
-    edit.mode = static_cast<EditMode>(reader.required("mode").one_of(names_list<EditMode>()));
-  }
+  if (reader.has("mode")) read_mode(reader.required("mode"), edit);
   if (reader.has("details")) {
     edit.details =
         static_cast<DetailsRule>(reader.required("details").one_of(names_list<DetailsRule>()));
@@ -239,7 +257,7 @@ Value to_value(const Recipe& recipe) {
     Value::Object fields{
         {"operator", edit.operation->name()},
         {"view", view_value(edit.view)},
-        {"mode", name_of(edit.mode)},
+        {"mode", mode_value(edit)},
         {"details", name_of(edit.details)},
         {"strength", edit.strength},
         {"effective", Value::Object{{"full", edit.effective.full}, {"zero", edit.effective.zero}}},
