@@ -8,7 +8,8 @@ namespace {
 
 /// Every field of every operator, with values that are not the defaults.
 const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits": [
-  {"operator": "pen", "view": "back", "mode": "base", "details": "ignore", "strength": 0.3,
+  {"operator": "pen", "view": "back", "mode": "base", "curvature": "keep",
+   "details": "ignore", "strength": 0.3,
    "effective": {"full": 50, "zero": 70.5}, "window": "view",
    "options": {"profile": "custom", "curve": [[-1, 0], [-0.1, 0.7], [1, 0]], "width": 0.1,
                "height": -0.02, "closed": true, "taper": 0.3, "pressure": "width", "smooth": false},
@@ -88,6 +89,7 @@ TEST(Recipe, DefaultsAreTheDocumentedOnes) {
   const Edit& edit = recipe.edits.at(0);
   EXPECT_EQ(edit.mode, EditMode::View);
   EXPECT_EQ(edit.details, DetailsRule::Keep);
+  EXPECT_EQ(edit.curvature, CurvatureRule::Drop);
   EXPECT_EQ(edit.strength, 1.0F);
   EXPECT_EQ(edit.effective.full, 60.0F);
   EXPECT_EQ(edit.effective.zero, 75.0F);

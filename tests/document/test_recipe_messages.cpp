@@ -63,14 +63,16 @@ TEST(RecipeMessages, AnEdit) {
             "r.json: edits[0].strength must be a number from 0 to 1, not the number 2");
   EXPECT_EQ(pen(good_pen, R"("mode": "normal")"),
             "r.json: edits[0].mode must be view or base, not the text \"normal\"");
+  EXPECT_EQ(pen(good_pen, R"("curvature": "keep")"),
+            "r.json: edits[0].curvature must be drop where the mode is not base, not the text "
+            "\"keep\"");
   EXPECT_EQ(pen(good_pen, R"("details": false)"),
             "r.json: edits[0].details must be keep or ignore, not false");
   EXPECT_EQ(pen(good_pen, R"("effective": {"full": 80})"),
             "r.json: edits[0].effective.full must be below zero, which is 75 degrees");
-  EXPECT_EQ(
-      pen(good_pen, R"("colour": 1)"),
-      "r.json: edits[0]: there is no field \"colour\"; it may be operator, view, mode, details, "
-      "strength, effective, window, options, strokes, mirror or comment");
+  EXPECT_EQ(pen(good_pen, R"("colour": 1)"),
+            "r.json: edits[0]: there is no field \"colour\"; it may be operator, view, mode, "
+            "curvature, details, strength, effective, window, options, strokes, mirror or comment");
 }
 
 TEST(RecipeMessages, Options) {

@@ -101,6 +101,7 @@ void add(const EditReport& other, EditReport& report) {
   report.pushed.largest_change =
       std::max(report.pushed.largest_change, other.pushed.largest_change);
   report.colors_changed += other.colors_changed;
+  report.relief.add(other.relief);
   report.times.pull += other.times.pull;
   report.times.operate += other.times.operate;
   report.times.push += other.times.push;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "normalshop/chart/cover.h"
+#include "normalshop/chart/curvature_term.h"
 #include "normalshop/chart/push.h"
 #include "normalshop/chart/storage.h"
 #include "normalshop/chart/transfer.h"
@@ -31,6 +32,8 @@ struct EditReport {
   int views = 0;      ///< that the edit looked from; the chart above is that of the largest
   PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
   std::size_t colors_changed = 0;  ///< texels (of a picture: pixels) of the colours, likewise
+  /// How high a relief along the base normals is beside their curvature; else 0.
+  ReliefReach relief;
   EditTimes times;
   TransferOptions transfer = {};
   /// Texels that the edit reached and the update did not write: 0 with Update::Gather.

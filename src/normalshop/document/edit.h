@@ -37,6 +37,13 @@ View resolve(const ViewSpec& spec, const Mesh& mesh);
 enum class DetailsRule { Keep, Ignore };
 constexpr auto names_of(DetailsRule) { return std::array<std::string_view, 2>{"keep", "ignore"}; }
 
+/// What becomes of the curvature of the base surface under a relief along its normals.
+enum class CurvatureRule {
+  Drop,  ///< heights count as small beside its radius (thesis 4.3)
+  Keep   ///< they are integrated, and normals are right for any height
+};
+constexpr auto names_of(CurvatureRule) { return std::array<std::string_view, 2>{"drop", "keep"}; }
+
 /// Angles of the effective chart in degrees: full strength up to the first, none from the second.
 struct EffectiveAngles {
   float full = 60.0F;
@@ -63,6 +70,7 @@ struct Edit {
   ViewSpec view = NamedView::Front;
   EditMode mode = EditMode::View;
   Vec3f along = Vec3f::UnitZ();  ///< of EditMode::Along: in object space, of any length
+  CurvatureRule curvature = CurvatureRule::Drop;  ///< of EditMode::Base
   DetailsRule details = DetailsRule::Keep;
   float strength = 1.0F;
   EffectiveAngles effective;

@@ -119,7 +119,8 @@ const std::vector<MapTile>& LiveEdit::draw(std::vector<UnitStroke> strokes) {
 EditReport LiveEdit::finish() {
   State& state = *state_;
   Document& document = state.document;
-  if (state.edit.mirror || state.edit.strokes.empty()) {
+  const bool whole = state.edit.mirror || state.edit.curvature == CurvatureRule::Keep;
+  if (whole || state.edit.strokes.empty()) {
     const Edit edit = state.edit;
     cancel();
     return document.apply(edit);
@@ -144,6 +145,10 @@ EditReport LiveEdit::finish() {
   } catch (...) {
     cancel();
     throw;
+  }
+  if (state.edit.mode == EditMode::Base) {
+    report.relief = CurvatureTerm(open.chart.base_normal, open.chart.weight)
+                        .measure(changed_region({}), state.result.change);
   }
   report.times.push += watch.lap();
   document.log_.push_back(state.edit);

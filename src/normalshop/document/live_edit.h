@@ -13,7 +13,8 @@ namespace normalshop {
 /// by Document::begin(). Until finish() or cancel() the document takes no other edit and must not
 /// move; an edit that is let go of without either is cancelled.
 ///
-/// Seams are brought together, colours moved and mirror images made by finish() alone.
+/// Seams are brought together, colours moved, the curvature term kept and mirror images made by
+/// finish() alone.
 class LiveEdit {
  public:
   ~LiveEdit();

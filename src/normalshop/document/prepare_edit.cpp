@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "normalshop/chart/curvature_term.h"
 #include "normalshop/chart/extend.h"
 #include "normalshop/chart/point_pull.h"
 #include "normalshop/chart/resolution.h"
@@ -55,6 +57,10 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, 
   }
 }
 
+bool bends(const Edit& edit) {
+  return edit.mode == EditMode::Base && edit.curvature == CurvatureRule::Keep;
+}
+
 /// The base surface's numbers, continued past its borders.
 SlopeImage base_slopes(const EditingChart& chart, const EditDirection& direction) {
   SlopeImage base(chart.grid.width(), chart.grid.height());
@@ -99,7 +105,8 @@ ChartSource make_source(const Edit& edit, const EditingChart& chart,
   ChartSource source;
   const bool ignore = edit.details == DetailsRule::Ignore;
   const EditOperator& operation = *edit.operation;
-  if (operation.reads() || operation.picks()) read_details(edit, chart, direction, source);
+  if (operation.reads() || operation.picks() || bends(edit))
+    read_details(edit, chart, direction, source);
   source.finer = ignore ? 0.0F : operation.removes_finer(chart.grid.pixel);
   const bool turns = source.finer > 0.0F || !source.grazing.empty();
   source.replaces = ignore || turns;
@@ -120,7 +127,8 @@ EditingChart build_chart(const Edit& edit, const CoverView& cover, const Mesh& m
   chart.grid = grid;
   PullOptions pulled;
   const EditOperator& operation = *edit.operation;
-  pulled.normals = operation.picks() || (operation.reads() && edit.details == DetailsRule::Keep) ||
+  const bool keeps = edit.details == DetailsRule::Keep;
+  pulled.normals = operation.picks() || ((operation.reads() || bends(edit)) && keeps) ||
                    transfer.update != Update::Gather;
   pulled.albedo = operation.reads_colors() && has_colors(storage);
   if (transfer.transfer == Transfer::Point) {
@@ -158,7 +166,7 @@ void open_source(const Edit& edit, OpenChart& open) {
   open.source = make_source(edit, chart, open.direction);
   if (open.report.transfer.update == Update::Gather) {
     chart.normal = {};
-    chart.base_normal = {};
+    if (edit.mode != EditMode::Base) chart.base_normal = {};
   }
   // What moves may come from beyond the border, and bicubic reads there need it.
   if (edit.operation->moves_colors() && !chart.albedo.empty()) extend(chart.weight, chart.albedo);
@@ -205,6 +213,19 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
   return open;
 }
 
+/// Restores the curvature term in the change of the normals, or measures what that would do.
+void bend(const EditingChart& chart, const std::optional<CurvatureTerm>& term,
+          PreparedEdit& prepared) {
+  OperatorResult& result = prepared.result;
+  ReliefReach& relief = prepared.report.relief;
+  if (!term) {
+    relief = CurvatureTerm(chart.base_normal, chart.weight).measure(result.region, result.change);
+    return;
+  }
+  const MaskView coverage = prepared.replaces ? result.coverage.view() : MaskView();
+  relief = term->convert(result.region, coverage, result.change);
+}
+
 PreparedEdit finish(const Edit& edit, OpenChart open) {
   Stopwatch watch;
   PreparedEdit prepared;
@@ -214,13 +235,20 @@ PreparedEdit finish(const Edit& edit, OpenChart open) {
   const OperatorInput input = operator_input(edit, open);
   EditingChart& chart = open.chart;
   check_on_surface(edit, input.strokes, chart, input.region, open.place.model);
+  std::optional<CurvatureTerm> term;
+  if (bends(edit)) {
+    term.emplace(chart.base_normal, chart.weight);
+    term->restore(open.source.slopes, input.region);
+  }
   prepared.result = empty_result(chart.grid.width(), chart.grid.height());
   operate(edit, open, input, prepared.result);
   prepared.replaces = open.source.replaces;
   prepared.colors = operate_on_colors(edit, open, input);
-  chart.albedo = {};
-  prepared.chart = std::move(chart);
   prepared.report = open.report;
+  if (edit.mode == EditMode::Base) bend(chart, term, prepared);
+  chart.albedo = {};
+  if (open.report.transfer.update == Update::Gather) chart.base_normal = {};
+  prepared.chart = std::move(chart);
   prepared.report.times.operate += watch.lap();
   return prepared;
 }
@@ -257,7 +285,7 @@ OperatorInput operator_input(const Edit& edit, const OpenChart& open) {
   }
   if (operation.reads_base()) input.base = source.base;
   input.colors = open.chart.albedo;
-  input.validity = source.validity;
+  if (operation.reads() || operation.picks()) input.validity = source.validity;
   return input;
 }
 

@@ -163,8 +163,8 @@ Value mode_value(const Edit& edit) {
 }
 
 Edit read_edit(const FieldReader& reader, Assets& assets) {
-  reader.only({"operator", "view", "mode", "details", "strength", "effective", "window", "options",
-               "strokes", "mirror", "comment"});
+  reader.only({"operator", "view", "mode", "curvature", "details", "strength", "effective",
+               "window", "options", "strokes", "mirror", "comment"});
   Edit edit;
   edit.path = reader.path();
   edit.operation = read_operator(reader, assets);
@@ -172,6 +172,12 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   // Several views have no direction in common.
   if (std::holds_alternative<SurfaceView>(edit.view)) edit.mode = EditMode::Base;
   if (reader.has("mode")) read_mode(reader.required("mode"), edit);
+  if (reader.has("curvature")) {
+    const FieldReader rule = reader.required("curvature");
+    edit.curvature = static_cast<CurvatureRule>(rule.one_of(names_list<CurvatureRule>()));
+    const bool keeps = edit.curvature == CurvatureRule::Keep;
+    if (keeps && edit.mode != EditMode::Base) rule.fail("drop where the mode is not base");
+  }
   if (reader.has("details")) {
     edit.details =
         static_cast<DetailsRule>(reader.required("details").one_of(names_list<DetailsRule>()));
@@ -258,6 +264,7 @@ Value to_value(const Recipe& recipe) {
         {"operator", edit.operation->name()},
         {"view", view_value(edit.view)},
         {"mode", mode_value(edit)},
+        {"curvature", name_of(edit.curvature)},
         {"details", name_of(edit.details)},
         {"strength", edit.strength},
         {"effective", Value::Object{{"full", edit.effective.full}, {"zero", edit.effective.zero}}},
