@@ -58,6 +58,10 @@ void print_summary(std::span<const Edit> log, std::span<const EditReport> report
                 std::string(log[i].operation->name()).c_str(), e.pushed.changed,
                 static_cast<double>(e.pushed.largest_change));
     if (e.colors_changed > 0) std::printf("%zu colours, ", e.colors_changed);
+    if (e.relief.largest >= 0.001F) {
+      std::printf("height up to %.1f %% of the radius of curvature, ",
+                  100.0 * static_cast<double>(e.relief.largest));
+    }
     std::printf("chart %d x %d, %.0f ms\n", e.chart_width, e.chart_height,
                 1e3 * (e.times.pull + e.times.operate + e.times.push));
   }

@@ -230,6 +230,33 @@ TEST(EditJob, EditsTheMirroredHalf) {
   EXPECT_LT(frame_at(mesh, point, NormalSpace::Tangent).object_normal(left).x(), -0.05F);
 }
 
+/// On a sphere of radius 1 a height is its part of the radius of curvature.
+TEST(EditJob, NotesReliefThatIsHighBesideTheCurvature) {
+  const auto notes_of = [](const std::string& height, const std::string& rule) {
+    const TempFolder folder;
+    write_image(folder / "flat.png", flat_normal_map(256, 256, CodeType::U16).codes());
+    OpenOptions options;
+    options.model = write_model_file(folder, test::uv_sphere(64, 32), "flat.png");
+    options.green_down = false;
+    const EditJob job = run_edit_job(
+        options,
+        recipe(R"({"operator": "pen", "view": "front", "mode": "base", "curvature": ")" + rule +
+               R"(", "options": {"profile": "bump", "width": 0.5, "height": )" + height +
+               R"(}, "strokes": [[[0, 0]]]})"),
+        folder / "out", {});
+    const std::string report = read_file(folder / "out/report.json");
+    EXPECT_NE(report.find("\"largest_height_over_radius\""), std::string::npos);
+    EXPECT_NE(report.find("\"passes_centre_of_curvature\": false"), std::string::npos);
+    std::string notes;
+    for (const std::string& note : job.notes) notes += note + "\n";
+    return notes;
+  };
+  EXPECT_EQ(notes_of("0.05", "drop").find("radius"), std::string::npos);
+  EXPECT_NE(notes_of("0.12", "drop").find("12 % of the surface's radius of curvature; \"curv"),
+            std::string::npos);
+  EXPECT_NE(notes_of("0.12", "keep").find("more than the 7 %"), std::string::npos);
+}
+
 TEST(EditJob, EditsWhereUvsRepeat) {
   const TempFolder folder;
   Mesh mesh = test::plane_grid(4);

@@ -1,6 +1,7 @@
 #include "normalshop/io/edit_report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "normalshop/core/options.h"
 #include "normalshop/core/stopwatch.h"
@@ -46,6 +47,27 @@ std::vector<float> select(const std::vector<float>& all, const std::vector<std::
   return out;
 }
 
+/// More than this much of the radius of curvature is told: normals may be off by two degrees.
+constexpr float high_relief = 0.07F;
+
+void note_relief(const Edit& edit, const ReliefReach& relief, std::vector<std::string>& notes) {
+  const std::string percent = std::to_string(std::lround(100.0F * relief.largest)) + " %";
+  if (relief.folds) {
+    notes.push_back(
+        edit.path +
+        ": its relief passes the surface's centre of curvature, where the surface would "
+        "fold; make it lower");
+  } else if (relief.largest > high_relief && edit.curvature == CurvatureRule::Drop) {
+    notes.push_back(edit.path + ": its relief is as high as " + percent +
+                    " of the surface's radius of curvature; \"curvature\": \"keep\" makes its "
+                    "normals right");
+  } else if (relief.largest > high_relief) {
+    notes.push_back(edit.path + ": its relief is as high as " + percent +
+                    " of the surface's radius of curvature, more than the 7 % up to which its "
+                    "normals are known to be right");
+  }
+}
+
 void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   Document& document = job.opened.document;
   clock.start("seams");
@@ -55,6 +77,7 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   clock.start("edits");
   for (const Edit& edit : recipe.edits) {
     job.edits.push_back(document.apply(edit, job.transfer));
+    note_relief(edit, job.edits.back().relief, job.notes);
     if (job.edits.back().coarser_than_texels) {
       job.notes.push_back(edit.path +
                           ": covers more texels than an editing chart has pixels, so it "
@@ -106,6 +129,8 @@ Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports
                                 {"texels_changed", e.pushed.changed},
                                 {"largest_change_degrees", e.pushed.largest_change},
                                 {"colors_changed", e.colors_changed},
+                                {"largest_height_over_radius", e.relief.largest},
+                                {"passes_centre_of_curvature", e.relief.folds},
                                 {"views", e.views},
                                 {"chart", Value::Array{e.chart_width, e.chart_height}},
                                 {"pixel", e.pixel},
