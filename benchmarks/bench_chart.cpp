@@ -295,12 +295,12 @@ void bench_build(const Mesh& mesh, const StorageAtlas& storage) {
       "x" + std::to_string(summary(peer_total).median / summary(ours_total).median));
 }
 
-void bench_push(const Mesh& mesh, const StorageAtlas& storage, EditMode mode) {
+void bench_push(const Mesh& mesh, const StorageAtlas& storage, const EditDirection& direction) {
   EditingChart chart = pull(mesh, storage, front_grid(mesh), {.normals = false});
   compute_weight(chart, {});
   const SlopeImage change(chart.grid.width(), chart.grid.height(), Vec2f(0.02F, -0.01F));
   ChartEdit edit;
-  edit.direction = mode;
+  edit.direction = direction;
   edit.change = change;
   edit.region = change.rect();
   PushResult result;
@@ -311,7 +311,7 @@ void bench_push(const Mesh& mesh, const StorageAtlas& storage, EditMode mode) {
     return std::to_string(static_cast<double>(texels) / ms * 1e-3) + " M texels/s";
   };
   std::printf("  push, %s mode: %zu texels visited, %zu changed\n",
-              std::string(name_of(mode)).c_str(), result.visited, result.changed);
+              std::string(name_of(direction.mode)).c_str(), result.visited, result.changed);
   row("push into an unedited map", fresh, rate(result.changed, fresh.median) + " changed");
   row("push again", t,
       rate(result.changed, t.median) + " changed, " + rate(result.visited, t.median) + " visited");
@@ -324,6 +324,7 @@ void bench(const std::string& name, const Mesh& mesh, StorageAtlas& storage) {
   bench_build(mesh, storage);
   bench_push(mesh, storage, EditMode::View);
   bench_push(mesh, storage, EditMode::Base);
+  bench_push(mesh, storage, EditDirection(Vec3f(0.3F, 0.2F, 0.9F)));
 }
 
 }  // namespace
