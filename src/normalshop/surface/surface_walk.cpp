@@ -4,17 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "normalshop/surface/detail/unfold.h"
+
 namespace normalshop {
 namespace {
 
 constexpr int most_steps = 256;
-
-/// An edge unfolded into the plane; what lies beyond is on its left.
-struct UnfoldedEdge {
-  std::uint32_t edge;
-  Vec2d first;
-  Vec2d second;
-};
 
 SurfacePoint point_from_corner_weights(std::uint32_t triangle, const std::array<double, 3>& w) {
   const double sum = w[0] + w[1] + w[2];
@@ -30,17 +25,6 @@ double crossing(const UnfoldedEdge& e, const Vec2d& start, const Vec2d& target) 
   const Vec2d along = e.second - e.first;
   const double squared = along.squaredNorm();
   return squared > 0.0 ? std::clamp((place - e.first).dot(along) / squared, 0.0, 1.0) : 0.0;
-}
-
-/// Third corner of the triangle that has `edge` (from e.second to e.first), in the plane of e.
-Vec2d unfold_apex(const Mesh& mesh, std::uint32_t edge, const UnfoldedEdge& e) {
-  const Vec3d origin = mesh.position(next_corner(edge)).cast<double>();
-  const Vec3d along = (mesh.position(edge).cast<double>() - origin).stableNormalized();
-  const Vec3d apex = mesh.position(previous_corner(edge)).cast<double>() - origin;
-  const double x = apex.dot(along);
-  const double y = (apex - x * along).norm();
-  const Vec2d axis = (e.second - e.first).stableNormalized();
-  return e.first + x * axis + y * Vec2d(-axis.y(), axis.x());
 }
 
 SurfacePoint point_inside(std::uint32_t edge, const UnfoldedEdge& e, const Vec2d& apex,
