@@ -154,12 +154,12 @@ TEST(SurfaceEdit, SaysWhatDoesNotFit) {
             "\"x\"");
   EXPECT_NE(refusal(smooth_all() + R"(, "strokes": [[[0, 0]]])").find("edits[0].strokes"),
             std::string::npos);
-  for (const char* strokes : {"", R"(, "strokes": [[[0, 0], [1, 1]]])"}) {
-    EXPECT_EQ(refusal(R"("operator": "pen", "view": "surface",
-                         "options": {"width": 1, "height": 1})" +
+  for (const char* strokes : {"", R"(, "strokes": [[[0, 0, 1], [1, 1, 1]]])"}) {
+    EXPECT_EQ(refusal(R"("operator": "text", "view": "surface",
+                         "options": {"text": "x", "size": 1, "height": 1})" +
                       std::string(strokes)),
               "r.json: edits[0].view must be front, back, left, right, top or bottom, or an object "
-              "with \"direction\" or \"facing\", since \"pen\" needs strokes here, not the text "
+              "with \"direction\" or \"facing\", since \"text\" needs strokes here, not the text "
               "\"surface\"");
   }
   EXPECT_NE(refusal(smooth_all(R"({"surface": 3})")).find("\"views\""), std::string::npos);

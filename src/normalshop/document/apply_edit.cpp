@@ -9,6 +9,7 @@
 #include "normalshop/core/error.h"
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/prepare_edit.h"
+#include "normalshop/document/stroke_views.h"
 #include "normalshop/surface/seam_fit.h"
 
 namespace normalshop {
@@ -115,14 +116,65 @@ PreparedEdit prepare_facing(const Edit& edit, const View& view, const Mesh& mesh
 }
 
 /// All views see what was there before any of them; their mean is stored at once.
-EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const Mesh& mesh,
-                            std::span<const SeamEdge> seams, SurfaceCover& cover,
-                            StorageAtlas& storage, const TransferOptions& transfer) {
+class SurfaceEdit {
+ public:
+  SurfaceEdit(const Mesh& mesh, StorageAtlas& storage)
+      : mesh_(mesh), storage_(storage), blend_(storage) {}
+
+  void add(const Edit& edit, const CoverView& view) {
+    PreparedEdit prepared = prepare_edit(edit, view, mesh_, storage_);
+    if (!prepared.faces) return;
+    faces_ = true;
+    Stopwatch watch;
+    if (edit.strength > 0.0F) blend_.add(mesh_, prepared.chart, prepared.change(), storage_);
+    prepared.report.times.push = watch.lap();
+    normalshop::add(prepared.report, report);
+  }
+  /// What reaches all of the surface leaves no seam, either.
+  void store(const Edit& edit, std::span<const SeamEdge> seams, float kept) {
+    if (!faces_) fail_averted(edit);
+    Stopwatch watch;
+    const std::vector<NormalMap> before = copies(storage_);
+    report.pushed = blend_.write(storage_);
+    fit(mesh_, seams, kept, pointers(before), storage_);
+    report.times.push += watch.lap();
+  }
+
+  EditReport report;
+
+ private:
+  const Mesh& mesh_;
+  StorageAtlas& storage_;
+  SurfaceBlend blend_;
+  bool faces_ = false;  // does the edit's direction see any of the surface?
+};
+
+void check_transfer(const Edit& edit, const TransferOptions& transfer) {
   if (!(transfer == TransferOptions{})) {
     throw InvalidInput(edit.path +
                        ".view must be one view, not \"surface\", with --transfer point or with "
                        "--update point or area");
   }
+}
+
+EditReport apply_along_strokes(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+                               StorageAtlas& storage) {
+  Stopwatch watch;
+  const std::vector<StrokeView> views = view_strokes(edit, mesh);
+  SurfaceEdit all(mesh, storage);
+  all.report.times.pull = watch.lap();
+  Edit part = edit;
+  for (const StrokeView& view : views) {
+    part.strokes = view.strokes;
+    all.add(part, view.cover(mesh));
+  }
+  all.store(edit, seams, 1.0F);
+  return all.report;
+}
+
+EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const Mesh& mesh,
+                            std::span<const SeamEdge> seams, SurfaceCover& cover,
+                            StorageAtlas& storage) {
   Stopwatch watch;
   const CoverOptions options{surface.views,
                              effective_options(edit.effective, bounds(mesh).diagonal())};
@@ -134,26 +186,11 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
                        ".view: no view shows a front side of the surface; the model's " +
                        "normals must point outwards");
   }
-  EditReport report;
-  report.times.pull = watch.lap();
-  bool faces = false;
-  SurfaceBlend blend(storage);
-  for (const CoverView& view : cover.views) {
-    PreparedEdit prepared = prepare_edit(edit, view, mesh, storage);
-    watch.lap();
-    if (!prepared.faces) continue;
-    faces = true;
-    if (edit.strength > 0.0F) blend.add(mesh, prepared.chart, prepared.change(), storage);
-    prepared.report.times.push = watch.lap();
-    add(prepared.report, report);
-  }
-  if (!faces) fail_averted(edit);
-  // What reaches all of the surface leaves no seam, either.
-  const std::vector<NormalMap> before = copies(storage);
-  report.pushed = blend.write(storage);
-  fit(mesh, seams, 1.0F - edit.strength, pointers(before), storage);
-  report.times.push += watch.lap();
-  return report;
+  SurfaceEdit all(mesh, storage);
+  all.report.times.pull = watch.lap();
+  for (const CoverView& view : cover.views) all.add(edit, view);
+  all.store(edit, seams, 1.0F - edit.strength);
+  return all.report;
 }
 
 }  // namespace
@@ -166,7 +203,9 @@ void fit_seams(const Mesh& mesh, std::span<const SeamEdge> seams, const ChartGri
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
                       SurfaceCover& cover, StorageAtlas& storage, const TransferOptions& transfer) {
   if (const auto* surface = std::get_if<SurfaceView>(&edit.view)) {
-    return apply_to_surface(edit, *surface, mesh, seams, cover, storage, transfer);
+    check_transfer(edit, transfer);
+    if (!edit.surface_strokes.empty()) return apply_along_strokes(edit, mesh, seams, storage);
+    return apply_to_surface(edit, *surface, mesh, seams, cover, storage);
   }
   if (edit.mirror && transfer.update != Update::Gather) {
     throw InvalidInput(edit.path +

@@ -25,7 +25,7 @@ struct FacingView {
   float width = 0.0F;
   float height = 0.0F;
 };
-/// All of the surface, from as many views as it takes: no strokes, no mirror.
+/// All of the surface, or what lies along strokes on it, from as many views as it takes: no mirror.
 struct SurfaceView {
   int views = 0;  ///< at most; 0: chosen
 };
@@ -64,6 +64,15 @@ struct MirrorPlane {
   float at = 0.0F;
 };
 
+/// A point of a stroke on the surface, in object space; the stroke goes through the surface point
+/// nearest to it.
+struct SurfaceStrokePoint {
+  Vec3f position;
+  float pressure = 1.0F;
+};
+/// Joined by the straightest ways on the surface (surface/geodesic.h).
+using SurfaceStroke = std::vector<SurfaceStrokePoint>;
+
 /// One recordable change: view + operator + options + strokes. No pixels.
 struct Edit {
   std::shared_ptr<const EditOperator> operation;
@@ -76,7 +85,8 @@ struct Edit {
   EffectiveAngles effective;
   ChartWindow window = ChartWindow::Strokes;
   std::vector<UnitStroke> strokes;
-  std::optional<MirrorPlane> mirror;  ///< makes the edit's mirror image, too
+  std::vector<SurfaceStroke> surface_strokes;  ///< of a SurfaceView alone, instead of strokes
+  std::optional<MirrorPlane> mirror;           ///< makes the edit's mirror image, too
   std::string path;  ///< where it was read from, for messages: "scar.json: edits[0]"
 };
 

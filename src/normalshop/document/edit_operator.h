@@ -15,6 +15,8 @@ namespace normalshop {
 struct UnitPoint {
   Vec2f position;
   float pressure = 1.0F;
+  float along = -1.0F;  ///< as in StrokePoint
+  float rest = -1.0F;
 };
 using UnitStroke = std::vector<UnitPoint>;
 
@@ -76,6 +78,8 @@ class EditOperator {
   virtual void check_strokes(const std::vector<UnitStroke>& strokes,
                              const std::string& path) const = 0;
   virtual StrokeUse stroke_use() const { return StrokeUse::Path; }
+  /// Can its strokes be lines on the surface, each view showing parts of them?
+  virtual bool follows_surface() const { return false; }
   /// Does it read the details under it?
   virtual bool reads() const = 0;
   /// Does it tell the base surface from the details on it? Only for operators that read.

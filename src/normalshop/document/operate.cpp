@@ -12,7 +12,10 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
   std::vector<Stroke> out;
   for (const UnitStroke& stroke : strokes) {
     Stroke pixels;
-    for (const UnitPoint& p : stroke) pixels.push_back({grid.to_pixel(p.position), p.pressure});
+    for (const UnitPoint& p : stroke) {
+      pixels.push_back(
+          {grid.to_pixel(p.position), p.pressure, p.along / grid.pixel, p.rest / grid.pixel});
+    }
     out.push_back(std::move(pixels));
   }
   return out;

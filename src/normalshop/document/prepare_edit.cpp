@@ -234,7 +234,10 @@ PreparedEdit finish(const Edit& edit, OpenChart open) {
   if (!open.faces) return prepared;
   const OperatorInput input = operator_input(edit, open);
   EditingChart& chart = open.chart;
-  check_on_surface(edit, input.strokes, chart, input.region, open.place.model);
+  // Strokes on the surface need no search for it; what a view shows of them may be its rim alone.
+  if (edit.surface_strokes.empty()) {
+    check_on_surface(edit, input.strokes, chart, input.region, open.place.model);
+  }
   std::optional<CurvatureTerm> term;
   if (bends(edit)) {
     term.emplace(chart.base_normal, chart.weight);

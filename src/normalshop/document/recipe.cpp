@@ -85,6 +85,28 @@ std::vector<UnitStroke> read_strokes(const FieldReader& reader) {
   return strokes;
 }
 
+SurfaceStrokePoint read_surface_point(const FieldReader& reader) {
+  const Value::Array* array = reader.value().array();
+  if (array == nullptr || (array->size() != 3 && array->size() != 4)) {
+    reader.fail("[x, y, z] or [x, y, z, pressure] where the view is \"surface\"");
+  }
+  const std::vector<FieldReader> items = reader.items();
+  SurfaceStrokePoint point{{coordinate(items[0]), coordinate(items[1]), coordinate(items[2])}};
+  if (items.size() == 4) point.pressure = static_cast<float>(items[3].number(0.0, 1.0));
+  return point;
+}
+
+std::vector<SurfaceStroke> read_surface_strokes(const FieldReader& reader) {
+  std::vector<SurfaceStroke> strokes;
+  for (const FieldReader& item : reader.items()) {
+    SurfaceStroke stroke;
+    for (const FieldReader& point : item.items()) stroke.push_back(read_surface_point(point));
+    if (stroke.empty()) item.fail("a list of at least one point");
+    strokes.push_back(std::move(stroke));
+  }
+  return strokes;
+}
+
 EffectiveAngles read_effective(const FieldReader& reader) {
   reader.only({"full", "zero"});
   EffectiveAngles angles;
@@ -128,8 +150,19 @@ MirrorPlane read_mirror(const FieldReader& reader) {
   return plane;
 }
 
-/// Strokes and planes of symmetry are of one view.
+/// Planes of symmetry and most strokes are of one view.
 void check_for_surface(const Edit& edit, const FieldReader& reader) {
+  if (reader.has("mirror")) {
+    reader.required("mirror").fail("left out where the view is \"surface\"");
+  }
+  if (edit.operation->follows_surface()) {
+    std::vector<UnitStroke> counted;  // what operators ask for is how many there are
+    for (const SurfaceStroke& stroke : edit.surface_strokes) {
+      counted.emplace_back(stroke.size(), UnitPoint{Vec2f::Zero()});
+    }
+    edit.operation->check_strokes(counted, reader.path() + ".strokes");
+    return;
+  }
   try {
     edit.operation->check_strokes({}, "");
   } catch (const InvalidInput&) {
@@ -137,8 +170,10 @@ void check_for_surface(const Edit& edit, const FieldReader& reader) {
                                  ", or an object with \"direction\" or \"facing\", since \"" +
                                  std::string(edit.operation->name()) + "\" needs strokes here");
   }
-  for (const char* field : {"strokes", "mirror"}) {
-    if (reader.has(field)) reader.required(field).fail("left out where the view is \"surface\"");
+  if (reader.has("strokes")) {
+    reader.required("strokes").fail("left out where the view is \"surface\", since \"" +
+                                    std::string(edit.operation->name()) +
+                                    "\" with these options follows none there");
   }
 }
 
@@ -190,9 +225,13 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
     edit.window =
         static_cast<ChartWindow>(reader.required("window").one_of(names_list<ChartWindow>()));
   }
-  if (reader.has("strokes")) edit.strokes = read_strokes(reader.required("strokes"));
+  const bool surface = std::holds_alternative<SurfaceView>(edit.view);
+  if (reader.has("strokes") && !surface) edit.strokes = read_strokes(reader.required("strokes"));
+  if (reader.has("strokes") && surface && edit.operation->follows_surface()) {
+    edit.surface_strokes = read_surface_strokes(reader.required("strokes"));
+  }
   if (reader.has("mirror")) edit.mirror = read_mirror(reader.required("mirror"));
-  if (std::holds_alternative<SurfaceView>(edit.view)) {
+  if (surface) {
     check_for_surface(edit, reader);
   } else {
     edit.operation->check_strokes(edit.strokes, reader.path() + ".strokes");
@@ -238,6 +277,20 @@ Value strokes_value(const std::vector<UnitStroke>& strokes) {
   return out;
 }
 
+Value surface_strokes_value(const std::vector<SurfaceStroke>& strokes) {
+  Value::Array out;
+  for (const SurfaceStroke& stroke : strokes) {
+    Value::Array points;
+    for (const SurfaceStrokePoint& p : stroke) {
+      Value::Array point{p.position.x(), p.position.y(), p.position.z()};
+      if (p.pressure != 1.0F) point.emplace_back(p.pressure);
+      points.emplace_back(std::move(point));
+    }
+    out.emplace_back(std::move(points));
+  }
+  return out;
+}
+
 }  // namespace
 
 Edit read_edit(const Value& edit, const std::string& path, Assets& assets) {
@@ -271,6 +324,9 @@ Value to_value(const Recipe& recipe) {
         {"window", name_of(edit.window)},
         {"options", edit.operation->options()}};
     if (!edit.strokes.empty()) fields.emplace_back("strokes", strokes_value(edit.strokes));
+    if (!edit.surface_strokes.empty()) {
+      fields.emplace_back("strokes", surface_strokes_value(edit.surface_strokes));
+    }
     if (edit.mirror) {
       fields.emplace_back(
           "mirror", Value::Object{{"axis", name_of(edit.mirror->axis)}, {"at", edit.mirror->at}});

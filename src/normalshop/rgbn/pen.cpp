@@ -74,32 +74,28 @@ struct Fades {
 
 /// Points with arc length; long segments are cut where the taper bends.
 std::vector<FieldVertex> vertices(const Stroke& stroke, const PenOptions& o, const Fades& fades) {
-  float length = 0.0F;
-  for (std::size_t i = 1; i < stroke.size(); ++i) {
-    length += (stroke[i].position - stroke[i - 1].position).norm();
-  }
+  const std::vector<float> along = lengths_along(stroke);
+  const float length = whole_length(stroke, along);
   const float taper = o.closed ? 0.0F : std::min(o.taper, 0.5F * length);
   std::vector<FieldVertex> out;
-  float along = 0.0F;
   const auto push = [&](const Vec2f& position, float pressure, float v) {
     const float p = std::clamp(pressure, 0.0F, 1.0F);
     const float t = taper_at(v, length, taper);
     out.push_back({position, 0.5F * o.width * t * (fades.width ? p : 1.0F),
                    t * t * (fades.height ? p : 1.0F)});
   };
-  push(stroke.front().position, stroke.front().pressure, 0.0F);
+  push(stroke.front().position, stroke.front().pressure, along.front());
   for (std::size_t i = 1; i < stroke.size(); ++i) {
     const StrokePoint& a = stroke[i - 1];
     const StrokePoint& b = stroke[i];
     const float step = (b.position - a.position).norm();
-    const bool bends = taper > 0.0F && (along < taper || along + step > length - taper);
+    const bool bends = taper > 0.0F && (along[i - 1] < taper || along[i] > length - taper);
     const int count = bends ? pieces(step, std::max(1.0F, taper / 32.0F)) : 1;
     for (int k = 1; k <= count; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(count);
       push(a.position + t * (b.position - a.position), a.pressure + t * (b.pressure - a.pressure),
-           along + t * step);
+           along[i - 1] + t * (along[i] - along[i - 1]));
     }
-    along += step;
   }
   return out;
 }

@@ -229,8 +229,10 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
 
 FieldSample PolylineField::patterned(const Shape& shape, float u, const Vec2f& away,
                                      const Along& along) const {
-  return pattern_({u, along.segment->start + along.at, shape.length, along.half_width(),
-                   along.segment->half_width_rate, away, along.gradient});
+  const Segment& s = *along.segment;
+  // Widths change along the line, too, and not along its picture.
+  return pattern_({u, s.start + along.at * s.rate, shape.length, along.half_width(),
+                   s.half_width_rate / s.rate, away, s.rate * along.gradient});
 }
 
 /// Round end of an open line: the odd part of the profile turns over smoothly from one side to the

@@ -32,6 +32,7 @@ void PolylineField::add(const FieldShape& source) {
   shapes_.back().closed = source.closed;
   for (const auto& contour : source.contours) add_contour(contour, source.closed);
   Shape& shape = shapes_.back();
+  if (source.length >= 0.0F) shape.length = source.length;
   double area = 0.0;
   float bottom = -std::numeric_limits<float>::infinity();
   shape.top = std::numeric_limits<float>::infinity();
@@ -89,7 +90,13 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     s.length = (b.position - a.position).norm();
     s.direction = s.length > 0.0F ? Vec2f((b.position - a.position) / s.length) : Vec2f(1.0F, 0.0F);
     s.start = along;
+    s.rate = 1.0F;
     along += s.length;
+    if (a.along >= 0.0F) {
+      s.start = a.along;
+      // A picture shortens, but for rounding.
+      if (s.length > 0.0F) s.rate = std::max(1.0F, (b.along - a.along) / s.length);
+    }
     s.half_width = a.half_width;
     s.fade = a.fade;
     if (s.length > 0.0F) {

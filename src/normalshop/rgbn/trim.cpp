@@ -49,9 +49,10 @@ std::vector<FieldShape> shapes_of(std::span<const Stroke> strokes, const TrimOpt
     FieldShape shape;
     shape.closed = o.closed;
     shape.contours.emplace_back();
+    if (is_part(stroke)) shape.length = stroke.front().along + stroke.front().rest;
     for (const StrokePoint& p : line_of(stroke, o)) {
       const float pressure = o.pressure ? std::clamp(p.pressure, 0.0F, 1.0F) : 1.0F;
-      shape.contours.back().push_back({p.position, 0.5F * o.width * pressure, 1.0F});
+      shape.contours.back().push_back({p.position, 0.5F * o.width * pressure, 1.0F, p.along});
     }
     shapes.push_back(std::move(shape));
   }

@@ -31,6 +31,7 @@ class AreaEdit : public EditOperator {
   bool picks() const override { return normalshop::picks(options_.area); }
   StrokeUse stroke_use() const override { return area_stroke_use(options_); }
   bool follows_strokes() const override { return options_.area == FilterArea::Brush; }
+  bool follows_surface() const override { return options_.area == FilterArea::Brush; }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {
     check_area(options_, strokes, path);

@@ -23,6 +23,7 @@ class PenOperator : public EditOperator {
   StrokeUse stroke_use() const override {
     return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
   }
+  bool follows_surface() const override { return !options_.closed; }
 
   bool follows_strokes() const override { return !options_.closed && options_.taper == 0.0F; }
 

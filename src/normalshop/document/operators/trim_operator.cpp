@@ -37,6 +37,7 @@ class TrimOperator : public EditOperator {
   StrokeUse stroke_use() const override {
     return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
   }
+  bool follows_surface() const override { return !options_.closed; }
 
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {

@@ -15,13 +15,15 @@ namespace normalshop {
 struct FieldVertex {
   Vec2f position;
   float half_width;
-  float fade;  ///< multiplies the height, 0 to 1; 1 where the profile changes the level
+  float fade;           ///< multiplies the height, 0 to 1; 1 where the profile changes the level
+  float along = -1.0F;  ///< arc length; below 0: as measured from the first vertex
 };
 
 /// An open polyline, or closed contours that share one inside (winding number not 0).
 struct FieldShape {
   std::vector<std::vector<FieldVertex>> contours;
   bool closed = false;
+  float length = -1.0F;  ///< of the whole line, where the vertices have arc lengths
 };
 
 struct FieldSample {
@@ -76,6 +78,7 @@ class PolylineField {
     Vec2f direction;
     float length;
     float start;  ///< arc length of a
+    float rate;   ///< of arc length along the segment
     float half_width, half_width_rate;
     float fade, fade_rate;
     Vec2f start_tangent, end_tangent;  ///< mean direction at the joints

@@ -25,10 +25,29 @@ inline void check_strokes(const std::string& name, std::span<const Stroke> strok
   }
 }
 
+/// Arc length at each point.
+inline std::vector<float> lengths_along(const Stroke& stroke) {
+  std::vector<float> along;
+  for (std::size_t i = 0; i < stroke.size(); ++i) {
+    if (is_part(stroke)) {
+      along.push_back(stroke[i].along);
+    } else {
+      along.push_back(i == 0 ? 0.0F
+                             : along.back() + (stroke[i].position - stroke[i - 1].position).norm());
+    }
+  }
+  return along;
+}
+
+/// Of the whole line, of which the stroke may be a part.
+inline float whole_length(const Stroke& stroke, const std::vector<float>& along) {
+  return is_part(stroke) ? stroke.front().along + stroke.front().rest : along.back();
+}
+
 /// The line that a stroke of this width follows, for options with `smooth` and `closed`.
 template <class Options>
 Stroke line_of(const Stroke& stroke, const Options& options) {
-  if (!options.smooth) return stroke;
+  if (!options.smooth || is_part(stroke)) return stroke;
   const float spacing = std::clamp(options.width / 8.0F, 1.0F, 3.0F);
   return smooth_stroke(stroke, spacing, options.closed ? StrokeEnds::Closed : StrokeEnds::Open);
 }
