@@ -1,6 +1,7 @@
 /// Texel maps, tangents, normals and topology of a head-sized mesh (17,000 triangles) and of its
 /// subdivision to 1.1 million. The head itself is used when the real data is on the machine.
 
+#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include <benchmark/benchmark.h>
 
 #include "normalshop/core/normal_levels.h"
+#include "normalshop/surface/geodesic.h"
+#include "normalshop/surface/nearest_point.h"
 #include "normalshop/surface/seams.h"
 #include "normalshop/surface/subdivide.h"
 #include "normalshop/surface/tangents.h"
@@ -48,6 +51,21 @@ const Mesh& mesh_of(benchmark::State& state) {
   if (mesh.triangles.empty()) state.SkipWithError("the head is not on this machine");
   state.counters["triangles"] = static_cast<double>(mesh.triangle_count());
   return mesh;
+}
+
+/// From one side of the model to the other; range(0), range(1): the model, see mesh_of().
+void geodesic_path(benchmark::State& state) {
+  const Mesh& mesh = mesh_of(state);
+  if (mesh.triangles.empty()) return;
+  const Topology topology = make_topology(mesh);
+  const Bounds box = bounds(mesh);
+  const std::array<SurfacePoint, 2> points = {nearest_surface_point(mesh, box.low),
+                                              nearest_surface_point(mesh, box.high)};
+  for (auto _ : state) {
+    const SurfacePath path = geodesic(mesh, topology, points);
+    benchmark::DoNotOptimize(path.points.data());
+    state.counters["pieces"] = static_cast<double>(path.points.size());
+  }
 }
 
 void texel_map(benchmark::State& state) {
@@ -139,6 +157,7 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
       ->UseRealTime();
 }
 BENCHMARK(topology)->Apply(sizes);
+BENCHMARK(geodesic_path)->Apply(sizes);
 BENCHMARK(tangents)->Apply(sizes);
 BENCHMARK(normals)->Apply(sizes);
 

@@ -156,7 +156,7 @@ TEST(SurfaceEdit, SaysWhatDoesNotFit) {
             std::string::npos);
   for (const char* strokes : {"", R"(, "strokes": [[[0, 0, 1], [1, 1, 1]]])"}) {
     EXPECT_EQ(refusal(R"("operator": "text", "view": "surface",
-                         "options": {"text": "x", "size": 1, "height": 1})" +
+                         "options": {"text": "x", "size": 1, "height": 1, "bevel": 0.1})" +
                       std::string(strokes)),
               "r.json: edits[0].view must be front, back, left, right, top or bottom, or an object "
               "with \"direction\" or \"facing\", since \"text\" needs strokes here, not the text "

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "document/edit_fixture.h"
+#include "document/picture_fixture.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/profile.h"
@@ -48,52 +49,148 @@ std::string circle_text(const Vec3f& axis, float a, float b) {
   return "[" + text + "]";
 }
 
+/// Angles between a sphere's texels and what they should be, in degrees.
 struct Errors {
   float largest = 0.0F;
   double mean = 0.0;
-  float outside = 0.0F;  ///< largest change away from the stroke
+  int count = 0;
+
+  void add(const Vec3f& is, const Vec3f& should) {
+    const float error = degrees_between(is, should);
+    largest = std::max(largest, error);
+    mean += (static_cast<double>(error) - mean) / ++count;
+  }
 };
+
+std::string pen_along(const std::string& strokes) {
+  return R"("operator": "pen", "view": "surface",
+            "options": {"profile": "bump", "width": 0.2, "height": 0.03}, "strokes": )" +
+         strokes;
+}
+
+/// The normal that pen_along() makes of a sphere beside a great circle.
+Vec3f beside_circle(const Vec3f& base, const Vec3f& axis) {
+  static const Profile profile({.shape = ProfileShape::Bump, .closed = false, .curve = {}});
+  const float slope = 0.03F * profile.at(std::asin(base.dot(axis)) / 0.1F).slope / 0.1F;
+  return base - slope * (axis - axis.dot(base) * base).normalized();
+}
 
 TEST(SurfaceStrokes, DrawOneProfileAllRoundASphere) {
   Document sphere = bare_sphere();
   const Vec3f axis = Vec3f(0.4F, 0.7F, -0.5F).normalized();
-  const float half_width = 0.1F;
-  const float height = 0.03F;
-  const EditReport report = sphere.apply(
-      edit(R"("operator": "pen", "view": "surface", "options": {"profile": "bump", "width": 0.2,
-              "height": 0.03}, "strokes": [)" +
-           circle_text(axis, 0.0F, 6.2831853F) + "]"));
-  const Profile profile({.shape = ProfileShape::Bump, .closed = false, .curve = {}});
-  Errors errors;
-  int count = 0;
+  const EditReport report =
+      sphere.apply(edit(pen_along("[" + circle_text(axis, 0.0F, 6.2831853F) + "]")));
+  Errors inside;
+  Errors outside;
   for (int y = 0; y < sphere_map_side; ++y) {
     for (int x = 0; x < sphere_map_side; ++x) {
       const Vec3f base = sphere_normal(x, y);
-      const float beside = std::asin(base.dot(axis));
-      const Vec3f normal = map_of(sphere).normal(x, y);
-      if (std::abs(beside) > 1.05F * half_width) {
-        errors.outside = std::max(errors.outside, degrees_between(normal, base));
-        continue;
-      }
-      const float slope = height * profile.at(beside / half_width).slope / half_width;
-      const Vec3f away = (axis - axis.dot(base) * base).normalized();
-      const float error = degrees_between(normal, base - slope * away);
-      errors.largest = std::max(errors.largest, error);
-      errors.mean += static_cast<double>(error);
-      ++count;
+      const bool on = std::abs(base.dot(axis)) < 0.105F;
+      (on ? inside : outside).add(map_of(sphere).normal(x, y), beside_circle(base, axis));
     }
   }
-  errors.mean /= count;
   EXPECT_GE(report.views, 6);
-  EXPECT_LT(errors.mean, 0.05);
-  EXPECT_LT(errors.largest, 0.25F);
-  EXPECT_LT(errors.outside, 1e-3F);
+  EXPECT_LT(inside.mean, 0.05);
+  EXPECT_LT(inside.largest, 0.25F);
+  EXPECT_LT(outside.largest, 1e-3F);
 }
 
-std::string pen_along(const std::string& strokes) {
-  return R"("operator": "pen", "view": "surface", "options": {"width": 0.2, "height": 0.03},
-            "strokes": )" +
-         strokes;
+/// Each view of one stroke shows the other, too, and must not weaken it.
+TEST(SurfaceStrokes, CrossEachOtherAtFullStrength) {
+  Document sphere = bare_sphere();
+  const Vec3f a = Vec3f(0.4F, 0.7F, -0.5F).normalized();
+  const Vec3f b = Vec3f(0.6F, -0.5F, 0.3F).normalized();
+  sphere.apply(edit(pen_along("[" + circle_text(a, 0.0F, 6.2831853F) + ", " +
+                              circle_text(b, 0.0F, 6.2831853F) + "]")));
+  Errors errors;
+  for (int y = 0; y < sphere_map_side; ++y) {
+    for (int x = 0; x < sphere_map_side; ++x) {
+      const Vec3f base = sphere_normal(x, y);
+      const bool on_a = std::abs(base.dot(a)) < 0.105F;
+      const bool on_b = std::abs(base.dot(b)) < 0.105F;
+      if (on_a == on_b) continue;
+      errors.add(map_of(sphere).normal(x, y), beside_circle(base, on_a ? a : b));
+    }
+  }
+  std::printf("crossing %g %g\n", errors.mean, static_cast<double>(errors.largest));
+  EXPECT_LT(errors.mean, 0.1);
+  EXPECT_LT(errors.largest, 2.0F);
+}
+
+/// 16 repetitions of the wave, whose phase is that of the way and not of any view.
+TEST(SurfaceStrokes, CarryPatternsOnFromViewToView) {
+  Document sphere = bare_sphere();
+  const Vec3f axis = Vec3f(0.4F, 0.7F, -0.5F).normalized();
+  sphere.apply(edit(R"("operator": "trim", "view": "surface",
+                       "options": {"pattern": "wave.png", "width": 0.2}, "strokes": [)" +
+                    circle_text(axis, 0.0F, 6.2831853F) + "]"));
+  const Vec3f start = axis.unitOrthogonal();
+  Errors errors;
+  for (int y = 0; y < sphere_map_side; ++y) {
+    for (int x = 0; x < sphere_map_side; ++x) {
+      const Vec3f base = sphere_normal(x, y);
+      if (std::abs(base.dot(axis)) > 0.09F) continue;
+      const Vec3f along = axis.cross(base).normalized();
+      const float angle = std::atan2(base.dot(axis.cross(start)), base.dot(start));
+      const float slope = -0.5F * (0.4F * 16.0F / 6.2831853F) * std::cos(16.0F * angle);
+      errors.add(map_of(sphere).normal(x, y), base - slope * along);
+    }
+  }
+  EXPECT_LT(errors.mean, 0.1);
+  EXPECT_LT(errors.largest, 0.5F);
+}
+
+/// Two sheets, the one behind the other.
+TEST(SurfaceStrokes, ReachWhatIsHidden) {
+  MeshBuilder two;
+  for (const float z : {0.0F, 0.3F}) {
+    const auto corner = [&](float x, float y) {
+      return MeshBuilder::Corner{{x, y, z},
+                                 Vec3f::UnitZ(),
+                                 {0.05F + 0.4F * x + 0.5F * (z > 0.0F ? 1.0F : 0.0F), 0.4F * y}};
+    };
+    two.quad(corner(0.0F, 0.0F), corner(1.0F, 0.0F), corner(1.0F, 1.0F), corner(0.0F, 1.0F));
+  }
+  Document sheets = document(two.finish(), flat_normal_map(128, 128, CodeType::U16));
+  sheets.apply(edit(pen_along("[[[0.2, 0.2, 0], [0.8, 0.8, 0]]]")));
+  int behind = 0;
+  int before = 0;
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const bool changed = map_of(sheets).normal(x, y).z() < 0.999F;
+      (x < 64 ? behind : before) += changed ? 1 : 0;
+    }
+  }
+  EXPECT_GT(behind, 200);
+  EXPECT_EQ(before, 0);
+}
+
+TEST(SurfaceStrokes, GuideBrushes) {
+  Document sphere = bare_sphere();
+  const Vec3f axis = Vec3f::UnitX();
+  sphere.apply(edit(pen_along("[" + circle_text(axis, 0.0F, 6.2831853F) + "]")));
+  const Document before = sphere;
+  sphere.apply(edit(R"("operator": "flatten", "view": "surface",
+                       "options": {"area": "brush", "brush": 0.6, "hardness": 0.5},
+                       "strokes": [)" +
+                    circle_text(axis, 0.0F, 3.0F) + "]"));
+  Errors flat;
+  Errors kept;
+  const Vec3f u = axis.unitOrthogonal();
+  const Vec3f v = axis.cross(u);
+  for (int y = 0; y < sphere_map_side; ++y) {
+    for (int x = 0; x < sphere_map_side; ++x) {
+      const Vec3f base = sphere_normal(x, y);
+      const float angle = std::atan2(base.dot(v), base.dot(u));
+      if (angle > 0.1F && angle < 2.9F && std::abs(base.dot(axis)) < 0.12F) {
+        flat.add(map_of(sphere).normal(x, y), base);
+      } else if (angle < -0.5F && angle > -2.7F) {
+        kept.add(map_of(sphere).normal(x, y), map_of(before).normal(x, y));
+      }
+    }
+  }
+  EXPECT_LT(flat.largest, 0.5F);
+  EXPECT_EQ(kept.largest, 0.0F);
 }
 
 std::string refused(const std::string& fields) {
@@ -114,7 +211,7 @@ TEST(SurfaceStrokes, ComeBackFromTheirJson) {
   EXPECT_EQ(recipe.edits[0].mode, EditMode::Base);
   const std::string text = to_json(to_value(recipe));
   EXPECT_EQ(to_json(to_value(parse(text))), text);
-  EXPECT_NE(text.find("[0.5,0.25,1,0.75]"), std::string::npos) << text;
+  EXPECT_NE(text.find("[0.5, 0.25, 1, 0.75]"), std::string::npos) << text;
 }
 
 TEST(SurfaceStrokes, AreRefusedWhereTheyDoNotFit) {
@@ -130,6 +227,11 @@ TEST(SurfaceStrokes, AreRefusedWhereTheyDoNotFit) {
                        "closed": true}, "strokes": [[[0, 0, 1], [1, 0, 0], [0, 1, 0]]])")
                 .find("\"pen\""),
             std::string::npos);
+}
+
+TEST(SurfaceStrokes, AreNotForPictures) {
+  ImageDocument flat = picture(waves(32, 32, 2, 0.3F));
+  EXPECT_THROW(flat.apply(edit(pen_along("[[[0, 0, 0], [5, 0, 0]]]"))), InvalidInput);
 }
 
 TEST(SurfaceStrokes, MustLieNearTheSurfaceAndOnOnePartOfIt) {

@@ -230,6 +230,27 @@ TEST(Pen, PressureScalesWidthAndHeight) {
   EXPECT_GT(Drawing(40, 40, half, o).heights(20, 14), 0.0F);
 }
 
+/// The middle of a line that tapers over all of its length, shown alone and half as wide.
+TEST(Pen, PartsOfALineKeepItsLengthsAndWidths) {
+  PenOptions o = options_of(ProfileShape::Bump, 24.0F, 3.0F);
+  o.taper = 100.0F;
+  o.smooth = true;
+  const Stroke whole = {{{20.0F, 32.0F}}, {{220.0F, 32.0F}}};
+  Stroke part = {{{60.0F, 32.0F}, 1.0F, 40.0F, 160.0F}, {{180.0F, 32.0F}, 1.0F, 160.0F, 40.0F}};
+  const Drawing all(240, 64, {whole}, o);
+  const Drawing middle(240, 64, {part}, o);
+  for (StrokePoint& p : part) p.across = 0.5F;
+  const Drawing narrow(240, 64, {part}, o);
+  for (int x = 80; x < 160; x += 7) {
+    for (int y = 20; y < 44; ++y) {
+      EXPECT_NEAR(middle.heights(x, y), all.heights(x, y), 2e-3F);
+      const int half = 32 + (y - 32) * 2;
+      const bool inside = half >= 0 && half < 64;
+      EXPECT_NEAR(narrow.heights(x, y), inside ? all.heights(x, half) : 0.0F, 2e-3F);
+    }
+  }
+}
+
 TEST(Pen, RejectsBadInput) {
   SlopeImage image(8, 8);
   const auto draw = [&](const Stroke& s, const PenOptions& o) {

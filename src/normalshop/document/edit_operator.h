@@ -17,6 +17,7 @@ struct UnitPoint {
   float pressure = 1.0F;
   float along = -1.0F;  ///< as in StrokePoint
   float rest = -1.0F;
+  float across = 1.0F;
 };
 using UnitStroke = std::vector<UnitPoint>;
 

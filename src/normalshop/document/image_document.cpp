@@ -294,6 +294,11 @@ ImageDocument::ImageDocument(Images images) : images_(std::move(images)) {
 }
 
 EditReport ImageDocument::apply(const Edit& edit) {
+  if (!edit.surface_strokes.empty()) {
+    throw InvalidInput(edit.path +
+                       ".view must be \"front\", and points [x, y]: a picture has no surface that "
+                       "strokes could follow");
+  }
   if (edit.mirror) throw InvalidInput(edit.path + ".mirror must be left out for a picture");
   Stopwatch watch;
   const Placed placed = place(edit, images_);

@@ -13,8 +13,8 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
   for (const UnitStroke& stroke : strokes) {
     Stroke pixels;
     for (const UnitPoint& p : stroke) {
-      pixels.push_back(
-          {grid.to_pixel(p.position), p.pressure, p.along / grid.pixel, p.rest / grid.pixel});
+      pixels.push_back({grid.to_pixel(p.position), p.pressure, p.along / grid.pixel,
+                        p.rest / grid.pixel, p.across});
     }
     out.push_back(std::move(pixels));
   }

@@ -113,13 +113,27 @@ class StrokeViews {
     return out;
   }
 
+  /// How much shorter the view shows lengths across the way: it shows areas smaller by n . d, and
+  /// lengths along the way by |t - (t . d) d|.
+  float across(std::size_t trace, std::size_t i, const View& view) const {
+    constexpr float least = 0.1F;
+    const Trace& points = traces_[trace];
+    const std::size_t before = i > 0 ? i - 1 : i;
+    const std::size_t after = i + 1 < points.size() ? i + 1 : i;
+    const Vec3f way = points[after].position - points[before].position;
+    const float length = way.norm();
+    const float shown = view.to_chart(way).head<2>().norm();
+    const float area = points[i].facing.dot(view.direction);
+    return shown > least * length ? std::clamp(area * length / shown, least, 1.0F) : 1.0F;
+  }
+
   UnitStroke drawn(const Part& part, const View& view) const {
     UnitStroke stroke;
     const float length = traces_[part.trace].back().along;
     for (std::size_t i = part.first; i <= part.last; ++i) {
       const TracePoint& p = at(part.trace, i);
       stroke.push_back({view.to_chart(p.position - view.center).head<2>(), p.pressure, p.along,
-                        length - p.along});
+                        length - p.along, across(part.trace, i, view)});
     }
     return stroke;
   }

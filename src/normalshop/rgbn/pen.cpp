@@ -78,13 +78,13 @@ std::vector<FieldVertex> vertices(const Stroke& stroke, const PenOptions& o, con
   const float length = whole_length(stroke, along);
   const float taper = o.closed ? 0.0F : std::min(o.taper, 0.5F * length);
   std::vector<FieldVertex> out;
-  const auto push = [&](const Vec2f& position, float pressure, float v) {
+  const auto push = [&](const Vec2f& position, float pressure, float across, float v) {
     const float p = std::clamp(pressure, 0.0F, 1.0F);
     const float t = taper_at(v, length, taper);
-    out.push_back({position, 0.5F * o.width * t * (fades.width ? p : 1.0F),
+    out.push_back({position, 0.5F * o.width * t * (fades.width ? p : 1.0F) * across,
                    t * t * (fades.height ? p : 1.0F)});
   };
-  push(stroke.front().position, stroke.front().pressure, along.front());
+  push(stroke.front().position, stroke.front().pressure, stroke.front().across, along.front());
   for (std::size_t i = 1; i < stroke.size(); ++i) {
     const StrokePoint& a = stroke[i - 1];
     const StrokePoint& b = stroke[i];
@@ -94,7 +94,7 @@ std::vector<FieldVertex> vertices(const Stroke& stroke, const PenOptions& o, con
     for (int k = 1; k <= count; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(count);
       push(a.position + t * (b.position - a.position), a.pressure + t * (b.pressure - a.pressure),
-           along[i - 1] + t * (along[i] - along[i - 1]));
+           a.across + t * (b.across - a.across), along[i - 1] + t * (along[i] - along[i - 1]));
     }
   }
   return out;

@@ -16,6 +16,7 @@ struct StrokePoint {
   /// there is.
   float along = -1.0F;
   float rest = -1.0F;
+  float across = 1.0F;  ///< lengths across the line are shown that many times as long, above 0
 };
 
 /// A polyline. One point is a dot.

@@ -52,7 +52,8 @@ std::vector<FieldShape> shapes_of(std::span<const Stroke> strokes, const TrimOpt
     if (is_part(stroke)) shape.length = stroke.front().along + stroke.front().rest;
     for (const StrokePoint& p : line_of(stroke, o)) {
       const float pressure = o.pressure ? std::clamp(p.pressure, 0.0F, 1.0F) : 1.0F;
-      shape.contours.back().push_back({p.position, 0.5F * o.width * pressure, 1.0F, p.along});
+      shape.contours.back().push_back(
+          {p.position, 0.5F * o.width * pressure * p.across, 1.0F, p.along});
     }
     shapes.push_back(std::move(shape));
   }

@@ -30,7 +30,8 @@ struct SurfacePath {
 /// (Sharp and Crane 2020) in strips of triangles instead of intrinsic edges. Where several such
 /// ways exist, the first one decides; it is not always the shortest of all.
 ///
-/// Throws InvalidInput without points, and where no way leads from one to the next.
+/// Throws InvalidInput without points, and where no way leads from one to the next: it must not lie
+/// in a triangle with two corners in one place, either (see nearest_surface_point()).
 SurfacePath geodesic(const Mesh& mesh, const Topology& topology,
                      std::span<const SurfacePoint> points);
 

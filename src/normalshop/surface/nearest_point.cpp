@@ -34,12 +34,21 @@ Vec2f nearest_weights(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3
   return sum > 0 ? Vec2f(vb / sum, vc / sum) : Vec2f(0, 0);
 }
 
+/// Of those with two corners in one place no way leads on; others reach as far.
+bool has_two_corners_in_one_place(const Mesh& mesh, std::size_t t) {
+  const Vec3f& a = mesh.position(3 * t);
+  const Vec3f& b = mesh.position(3 * t + 1);
+  const Vec3f& c = mesh.position(3 * t + 2);
+  return a == b || b == c || c == a;
+}
+
 }  // namespace
 
 SurfacePoint nearest_surface_point(const Mesh& mesh, const Vec3f& position) {
   SurfacePoint best;
   float smallest = std::numeric_limits<float>::max();
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (has_two_corners_in_one_place(mesh, t)) continue;
     const Vec2f w = nearest_weights(position, mesh.position(3 * t), mesh.position(3 * t + 1),
                                     mesh.position(3 * t + 2));
     const SurfacePoint point{static_cast<std::uint32_t>(t), w.x(), w.y()};
