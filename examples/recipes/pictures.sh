@@ -52,3 +52,7 @@ picture spot spot/spot_quadrangulated.obj "--size 4096" \
   "--albedo $models/spot/spot_texture.png --view=-1,0.2,-0.8 --width 1.75 --center 0,0.1,0.12"
 picture patches spot/spot_quadrangulated.obj "--size 4096" \
   "--albedo $models/spot/spot_texture.png --view=-1,0.2,-0.3 --light=-1,1,1" "--albedo $models/spot/spot_texture.png"
+
+run demo -o "$work/demo"
+models=$work
+picture rope demo/head.gltf "" "--view=0.6,0.25,1"

@@ -36,9 +36,9 @@ std::string point_text(const Vec3f& p) {
          "]";
 }
 
-/// Points on the great circle across `axis`, from angle a to b, a right angle or less apart.
-std::string circle_text(const Vec3f& axis, float a, float b) {
-  const Vec3f u = axis.unitOrthogonal();
+/// Points on the great circle across `axis`, from angle a to b from u on, a right angle or less
+/// apart.
+std::string circle_text(const Vec3f& axis, const Vec3f& u, float a, float b) {
   const Vec3f v = axis.normalized().cross(u);
   const int pieces = 1 + static_cast<int>(std::abs(b - a) / 1.58F);
   std::string text;
@@ -47,6 +47,10 @@ std::string circle_text(const Vec3f& axis, float a, float b) {
     text += (i > 0 ? ", " : "") + point_text(std::cos(t) * u + std::sin(t) * v);
   }
   return "[" + text + "]";
+}
+
+std::string circle_text(const Vec3f& axis, float a, float b) {
+  return circle_text(axis, axis.unitOrthogonal(), a, b);
 }
 
 /// Angles between a sphere's texels and what they should be, in degrees.
@@ -100,15 +104,16 @@ TEST(SurfaceStrokes, CrossEachOtherAtFullStrength) {
   Document sphere = bare_sphere();
   const Vec3f a = Vec3f(0.4F, 0.7F, -0.5F).normalized();
   const Vec3f b = Vec3f(0.6F, -0.5F, 0.3F).normalized();
-  sphere.apply(edit(pen_along("[" + circle_text(a, 0.0F, 6.2831853F) + ", " +
-                              circle_text(b, 0.0F, 6.2831853F) + "]")));
+  const Vec3f middle = a.cross(b).normalized();
+  sphere.apply(edit(pen_along("[" + circle_text(a, middle, -1.2F, 1.2F) + ", " +
+                              circle_text(b, middle, -1.2F, 1.2F) + "]")));
   Errors errors;
   for (int y = 0; y < sphere_map_side; ++y) {
     for (int x = 0; x < sphere_map_side; ++x) {
       const Vec3f base = sphere_normal(x, y);
       const bool on_a = std::abs(base.dot(a)) < 0.105F;
       const bool on_b = std::abs(base.dot(b)) < 0.105F;
-      if (on_a == on_b) continue;
+      if (on_a == on_b || base.dot(middle) < 0.5F) continue;
       errors.add(map_of(sphere).normal(x, y), beside_circle(base, on_a ? a : b));
     }
   }
@@ -168,12 +173,12 @@ TEST(SurfaceStrokes, ReachWhatIsHidden) {
 TEST(SurfaceStrokes, GuideBrushes) {
   Document sphere = bare_sphere();
   const Vec3f axis = Vec3f::UnitX();
-  sphere.apply(edit(pen_along("[" + circle_text(axis, 0.0F, 6.2831853F) + "]")));
+  sphere.apply(edit(pen_along("[" + circle_text(axis, -1.3F, 1.5F) + "]")));
   const Document before = sphere;
   sphere.apply(edit(R"("operator": "flatten", "view": "surface",
-                       "options": {"area": "brush", "brush": 0.6, "hardness": 0.5},
+                       "options": {"area": "brush", "brush": 0.5, "hardness": 0.6},
                        "strokes": [)" +
-                    circle_text(axis, 0.0F, 3.0F) + "]"));
+                    circle_text(axis, 0.0F, 1.2F) + "]"));
   Errors flat;
   Errors kept;
   const Vec3f u = axis.unitOrthogonal();
@@ -182,9 +187,9 @@ TEST(SurfaceStrokes, GuideBrushes) {
     for (int x = 0; x < sphere_map_side; ++x) {
       const Vec3f base = sphere_normal(x, y);
       const float angle = std::atan2(base.dot(v), base.dot(u));
-      if (angle > 0.1F && angle < 2.9F && std::abs(base.dot(axis)) < 0.12F) {
+      if (angle > 0.1F && angle < 1.1F && std::abs(base.dot(axis)) < 0.12F) {
         flat.add(map_of(sphere).normal(x, y), base);
-      } else if (angle < -0.5F && angle > -2.7F) {
+      } else if (angle < -0.5F && angle > -1.2F) {
         kept.add(map_of(sphere).normal(x, y), map_of(before).normal(x, y));
       }
     }
