@@ -55,4 +55,4 @@ picture patches spot/spot_quadrangulated.obj "--size 4096" \
 
 run demo -o "$work/demo"
 models=$work
-picture rope demo/head.gltf "" "--view=0.6,0.25,1"
+picture rope demo/head.gltf "" "--view=-0.8,0.1,0.6"
