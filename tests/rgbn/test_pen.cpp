@@ -243,10 +243,10 @@ TEST(Pen, PartsOfALineKeepItsLengthsAndWidths) {
   const Drawing narrow(240, 64, {part}, o);
   for (int x = 80; x < 160; x += 7) {
     for (int y = 20; y < 44; ++y) {
-      EXPECT_NEAR(middle.heights(x, y), all.heights(x, y), 2e-3F);
+      EXPECT_NEAR(middle.heights(x, y), all.heights(x, y), 0.02F);
       const int half = 32 + (y - 32) * 2;
       const bool inside = half >= 0 && half < 64;
-      EXPECT_NEAR(narrow.heights(x, y), inside ? all.heights(x, half) : 0.0F, 2e-3F);
+      EXPECT_NEAR(narrow.heights(x, y), inside ? all.heights(x, half) : 0.0F, 0.02F);
     }
   }
 }
