@@ -1,8 +1,10 @@
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <queue>
 
 #include "support/meshes.h"
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
