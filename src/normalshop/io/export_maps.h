@@ -26,7 +26,7 @@ struct ExportOptions {
   bool mip_levels = false;
   /// The roughness, 0 to 1, of the material: what the normals of a mip level lose is added to it
   /// (widened_roughness) and written as `<texture set>_roughness.png`.
-  std::optional<float> roughness;
+  std::optional<float> roughness = {};
   int roughness_level = 1;  ///< from 1 on
 };
 
