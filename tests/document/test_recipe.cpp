@@ -10,7 +10,7 @@ namespace {
 const std::string full_recipe = R"({"version": 1, "comment": "all of it", "edits": [
   {"operator": "pen", "view": "back", "mode": "base", "curvature": "keep",
    "details": "ignore", "strength": 0.3,
-   "effective": {"full": 50, "zero": 70.5}, "window": "view",
+   "effective": {"full": 50, "zero": 70.5}, "window": "view", "spray": {"full": 10.5, "zero": 88},
    "options": {"profile": "custom", "curve": [[-1, 0], [-0.1, 0.7], [1, 0]], "width": 0.1,
                "height": -0.02, "closed": true, "taper": 0.3, "pressure": "width", "smooth": false},
    "strokes": [[[0, 0], [0.1, 0.2, 0.35], [0.3, -7e-5]], [[1, 2], [3, 4], [5, 6, 0]]]},
@@ -94,6 +94,7 @@ TEST(Recipe, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(edit.effective.full, 60.0F);
   EXPECT_EQ(edit.effective.zero, 75.0F);
   EXPECT_EQ(edit.window, ChartWindow::Strokes);
+  EXPECT_FALSE(edit.spray);
   EXPECT_TRUE(edit.strokes.empty());
   EXPECT_EQ(std::get<NamedView>(edit.view), NamedView::Left);
   EXPECT_EQ(edit.path, "r.json: edits[0]");

@@ -83,6 +83,9 @@ struct Edit {
   DetailsRule details = DetailsRule::Keep;
   float strength = 1.0F;
   EffectiveAngles effective;
+  /// Of the normals that were there, details included, to the viewer: full strength up to the first
+  /// angle, none from the second. None: they make no difference.
+  std::optional<EffectiveAngles> spray;
   ChartWindow window = ChartWindow::Strokes;
   std::vector<UnitStroke> strokes;
   std::vector<SurfaceStroke> surface_strokes;  ///< of a SurfaceView alone, instead of strokes

@@ -269,6 +269,15 @@ std::size_t apply_colors(const Edit& edit, const OperatorInput& input, MaskView 
   return changed;
 }
 
+MaskImage spray_shares(SlopeView slopes, const EffectiveAngles& angles) {
+  MaskImage shares(slopes.width(), slopes.height());
+  const SprayShare share(angles);
+  for_pixels(shares.rect(), [&](int x, int y) {
+    shares(x, y) = share(1.0F / std::sqrt(1.0F + slopes(x, y).squaredNorm()));
+  });
+  return shares;
+}
+
 void check_sizes(int width, int height, const NormalMap& normals, const char* what) {
   if (width == normals.width() && height == normals.height()) return;
   throw InvalidInput("the " + std::string(what) + " must have the size of the normals, " +
@@ -334,6 +343,12 @@ EditReport ImageDocument::apply(const Edit& edit) {
   report.times.pull = watch.lap();
   OperatorResult result = empty_result(placed.grid.width(), placed.grid.height());
   run_operator(placed.edit, input, result);
+  MaskImage spray;
+  if (edit.spray) {
+    spray =
+        spray_shares(pull_slopes(images_.normals, placed, DetailsRule::Keep, weight), *edit.spray);
+    multiply(spray, result);
+  }
   report.times.operate = watch.lap();
   if (edit.strength > 0.0F) {
     const bool covers = edit.details == DetailsRule::Ignore;

@@ -55,6 +55,16 @@ OperatorInput make_input(const Edit& edit, const ChartGrid& grid, const EditPlac
   return input;
 }
 
+SprayShare::SprayShare(const EffectiveAngles& angles)
+    : facing_(EffectiveOptions{.full_angle = angles.full, .zero_angle = angles.zero}) {}
+
+void multiply(MaskView factor, OperatorResult& result) {
+  for_pixels(result.region, [&](int x, int y) {
+    result.change(x, y) *= factor(x, y);
+    result.coverage(x, y) *= factor(x, y);
+  });
+}
+
 OperatorResult empty_result(int width, int height) {
   return {SlopeImage(width, height, Vec2f(0.0F, 0.0F)), MaskImage(width, height, 0.0F), {}};
 }

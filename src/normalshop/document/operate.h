@@ -1,5 +1,6 @@
 #pragma once
 
+#include "normalshop/chart/effective.h"
 #include "normalshop/chart/grid.h"
 #include "normalshop/document/edit.h"
 
@@ -31,5 +32,17 @@ struct OperatorResult {
 OperatorResult empty_result(int width, int height);
 /// Fills `result`, which is 0 there, in input.region.
 void run_operator(const Edit& edit, const OperatorInput& input, OperatorResult& result);
+
+/// What Edit::spray makes of a unit normal whose z is the cosine of its angle to the viewer.
+class SprayShare {
+ public:
+  explicit SprayShare(const EffectiveAngles& angles);
+  float operator()(float cosine) const { return facing_(cosine); }
+
+ private:
+  FacingWeight facing_;
+};
+/// Multiplies the result in its region by a factor for each pixel.
+void multiply(MaskView factor, OperatorResult& result);
 
 }  // namespace normalshop

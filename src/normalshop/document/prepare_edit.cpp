@@ -100,6 +100,13 @@ void read_details(const Edit& edit, const EditingChart& chart, const EditDirecti
   extend(source.validity, source.slopes);
 }
 
+MaskImage spray_shares(const EditingChart& chart, const EffectiveAngles& angles) {
+  MaskImage shares(chart.grid.width(), chart.grid.height());
+  const SprayShare share(angles);
+  for_pixels(shares.rect(), [&](int x, int y) { shares(x, y) = share(chart.normal(x, y).z()); });
+  return shares;
+}
+
 ChartSource make_source(const Edit& edit, const EditingChart& chart,
                         const EditDirection& direction) {
   ChartSource source;
@@ -111,6 +118,7 @@ ChartSource make_source(const Edit& edit, const EditingChart& chart,
   const bool turns = source.finer > 0.0F || !source.grazing.empty();
   source.replaces = ignore || turns;
   if (operation.reads_base() || turns) source.base = base_slopes(chart, direction);
+  if (edit.spray) source.spray = spray_shares(chart, *edit.spray);
   return source;
 }
 
@@ -129,7 +137,7 @@ EditingChart build_chart(const Edit& edit, const CoverView& cover, const Mesh& m
   const EditOperator& operation = *edit.operation;
   const bool keeps = edit.details == DetailsRule::Keep;
   pulled.normals = operation.picks() || ((operation.reads() || bends(edit)) && keeps) ||
-                   transfer.update != Update::Gather;
+                   edit.spray || transfer.update != Update::Gather;
   pulled.albedo = operation.reads_colors() && has_colors(storage);
   if (transfer.transfer == Transfer::Point) {
     pull_points(mesh, storage, grid, pulled, chart);
@@ -299,6 +307,7 @@ void operate(const Edit& edit, const OpenChart& open, const OperatorInput& input
   if (source.finer > 0.0F || !source.grazing.empty()) {
     replace_details(source.grazing, source.finer, source.slopes, source.base, result);
   }
+  if (!source.spray.empty()) multiply(source.spray, result);
 }
 
 ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const OperatorInput& input) {
@@ -307,7 +316,8 @@ ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const Ope
   ColorResult result{ColorImage(before.width(), before.height()), {}};
   result.region = edit.operation->run_colors(input, result.change);
   for_pixels(result.region, [&](int x, int y) {
-    result.change(x, y) = edit.strength * (result.change(x, y) - before(x, y));
+    const float spray = open.source.spray.empty() ? 1.0F : open.source.spray(x, y);
+    result.change(x, y) = (edit.strength * spray) * (result.change(x, y) - before(x, y));
   });
   return result;
 }

@@ -19,6 +19,7 @@ struct ChartSource {
   SlopeImage seen;  ///< empty: slopes
   MaskImage validity;
   MaskImage grazing;      ///< may be empty
+  MaskImage spray;        ///< of Edit::spray; else empty
   float finer = 0.0F;     ///< EditOperator::removes_finer()
   bool replaces = false;  ///< the result's coverage counts
 };

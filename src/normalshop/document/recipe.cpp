@@ -107,11 +107,15 @@ std::vector<SurfaceStroke> read_surface_strokes(const FieldReader& reader) {
   return strokes;
 }
 
-EffectiveAngles read_effective(const FieldReader& reader) {
+/// The second angle is at most `most` degrees.
+EffectiveAngles read_angles(const FieldReader& reader, int most) {
   reader.only({"full", "zero"});
   EffectiveAngles angles;
-  if (reader.has("full")) angles.full = static_cast<float>(reader.required("full").number(0, 85));
-  if (reader.has("zero")) angles.zero = static_cast<float>(reader.required("zero").number(1, 86));
+  const auto angle = [&](const char* name, int low, int high, float& value) {
+    if (reader.has(name)) value = static_cast<float>(reader.required(name).number(low, high));
+  };
+  angle("full", 0, most - 1, angles.full);
+  angle("zero", 1, most, angles.zero);
   if (angles.full >= angles.zero) {
     throw InvalidInput(reader.path() + ".full must be below zero, which is " +
                        to_line(Value(angles.zero)) + " degrees");
@@ -198,7 +202,7 @@ Value mode_value(const Edit& edit) {
 }
 
 Edit read_edit(const FieldReader& reader, Assets& assets) {
-  reader.only({"operator", "view", "mode", "curvature", "details", "strength", "effective",
+  reader.only({"operator", "view", "mode", "curvature", "details", "strength", "effective", "spray",
                "window", "options", "strokes", "mirror", "comment"});
   Edit edit;
   edit.path = reader.path();
@@ -220,7 +224,8 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   if (reader.has("strength")) {
     edit.strength = static_cast<float>(reader.required("strength").number(0.0, 1.0));
   }
-  if (reader.has("effective")) edit.effective = read_effective(reader.required("effective"));
+  if (reader.has("effective")) edit.effective = read_angles(reader.required("effective"), 86);
+  if (reader.has("spray")) edit.spray = read_angles(reader.required("spray"), 90);
   if (reader.has("window")) {
     edit.window =
         static_cast<ChartWindow>(reader.required("window").one_of(names_list<ChartWindow>()));
@@ -261,6 +266,10 @@ Value view_value(const ViewSpec& spec) {
     fields.emplace_back(surface_name, Value::Object{{"views", views}});
   }
   return fields;
+}
+
+Value angles_value(const EffectiveAngles& angles) {
+  return Value::Object{{"full", angles.full}, {"zero", angles.zero}};
 }
 
 Value strokes_value(const std::vector<UnitStroke>& strokes) {
@@ -313,16 +322,16 @@ Recipe parse_recipe(std::string_view json, std::string_view file, Assets& assets
 Value to_value(const Recipe& recipe) {
   Value::Array edits;
   for (const Edit& edit : recipe.edits) {
-    Value::Object fields{
-        {"operator", edit.operation->name()},
-        {"view", view_value(edit.view)},
-        {"mode", mode_value(edit)},
-        {"curvature", name_of(edit.curvature)},
-        {"details", name_of(edit.details)},
-        {"strength", edit.strength},
-        {"effective", Value::Object{{"full", edit.effective.full}, {"zero", edit.effective.zero}}},
-        {"window", name_of(edit.window)},
-        {"options", edit.operation->options()}};
+    Value::Object fields{{"operator", edit.operation->name()},
+                         {"view", view_value(edit.view)},
+                         {"mode", mode_value(edit)},
+                         {"curvature", name_of(edit.curvature)},
+                         {"details", name_of(edit.details)},
+                         {"strength", edit.strength},
+                         {"effective", angles_value(edit.effective)},
+                         {"window", name_of(edit.window)},
+                         {"options", edit.operation->options()}};
+    if (edit.spray) fields.emplace_back("spray", angles_value(*edit.spray));
     if (!edit.strokes.empty()) fields.emplace_back("strokes", strokes_value(edit.strokes));
     if (!edit.surface_strokes.empty()) {
       fields.emplace_back("strokes", surface_strokes_value(edit.surface_strokes));
