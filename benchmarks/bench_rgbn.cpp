@@ -152,6 +152,38 @@ void pen_dab_64(benchmark::State& state) {
 }
 BENCHMARK(pen_dab_64)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// The last dab of a stroke of 100 points, as far apart as a tenth of the width, as live editing
+/// asks for it: the box around its last 5 points.
+void pen_dab_wide(benchmark::State& state) {
+  const auto width = static_cast<float>(state.range(0));
+  Stroke stroke;
+  Vec2f at(1200.0F, 200.0F);
+  for (int i = 0; i < 100; ++i) {
+    stroke.push_back({at});
+    const float angle = 0.039F * static_cast<float>(i);
+    at += 0.1F * width * Vec2f(std::cos(angle), std::sin(angle));
+  }
+  PenOptions options;
+  options.profile = ProfileShape::Bump;
+  options.width = width;
+  options.height = 0.1F * width;
+  SlopeImage details(2400, 2400);
+  MaskImage coverage(2400, 2400);
+  Vec2f low = at;
+  Vec2f high = at;
+  for (std::size_t i = stroke.size() - 5; i < stroke.size(); ++i) {
+    low = low.cwiseMin(stroke[i].position);
+    high = high.cwiseMax(stroke[i].position);
+  }
+  const int wide = reach(options);
+  const Rect dab = intersect({static_cast<int>(low.x()) - wide, static_cast<int>(low.y()) - wide,
+                              static_cast<int>(high.x()) + wide, static_cast<int>(high.y()) + wide},
+                             details.rect());
+  for (auto _ : state) pen(details, coverage, dab, std::span<const Stroke>(&stroke, 1), options);
+  count_pixels(state, static_cast<double>(dab.width()) * dab.height());
+}
+BENCHMARK(pen_dab_wide)->Arg(97)->Arg(391)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
 void pen_closed_step_2000(benchmark::State& state) {
   Stroke stroke;
   for (int i = 0; i < 400; ++i) {

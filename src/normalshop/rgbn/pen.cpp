@@ -43,6 +43,7 @@ Vec2f catmull_rom(const std::array<Vec2f, 4>& p, const std::array<float, 4>& t, 
 }
 
 float catmull_rom(const std::array<float, 4>& p, float t) {
+  if (p[0] == p[1] && p[1] == p[2] && p[2] == p[3]) return std::clamp(p[1], 0.0F, 1.0F);
   const std::array<float, 4> w = cubic_weights(t);
   return std::clamp(p[0] * w[0] + p[1] * w[1] + p[2] * w[2] + p[3] * w[3], 0.0F, 1.0F);
 }

@@ -11,6 +11,8 @@ namespace normalshop {
 namespace {
 
 constexpr int cell_size = 8;
+/// Cells of cells.
+constexpr int block_size = 32;
 /// Nearer to the line than this, its own orientation says where inside is.
 constexpr float touching = 1e-3F;
 /// Slope jumps are spread over this many pixels on each side, but not over more of the profile.
@@ -68,17 +70,22 @@ void PolylineField::render_tile(const Rect& tile, const List& segments, int grid
     for (int y = tile.y0; y < tile.y1; ++y) write(tile.x0, y, row);
     return;
   }
-  const float radius = 0.5F * cell_size * std::sqrt(2.0F) + 0.5F;
-  std::vector<List> cells(static_cast<std::size_t>((tile.width() + cell_size - 1) / cell_size));
+  const auto lists = [&](int size) {
+    return std::vector<List>(static_cast<std::size_t>((tile.width() + size - 1) / size));
+  };
+  std::vector<List> blocks = lists(block_size);
+  std::vector<List> cells = lists(cell_size);
   const float scale = 1.0F / static_cast<float>(grid * grid);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
+      const auto starts = [&](int size) {
+        return (x - tile.x0) % size == 0 && (y - tile.y0) % size == 0;
+      };
+      const auto square = [&](int size) { return Rect{x, y, x + size, y + size}; };
+      List& block = blocks[static_cast<std::size_t>((x - tile.x0) / block_size)];
       List& cell = cells[static_cast<std::size_t>((x - tile.x0) / cell_size)];
-      if ((y - tile.y0) % cell_size == 0 && (x - tile.x0) % cell_size == 0) {
-        const Vec2f center(static_cast<float>(x) + 0.5F * (cell_size - 1),
-                           static_cast<float>(y) + 0.5F * (cell_size - 1));
-        prune(segments, center, radius, cell);
-      }
+      if (starts(block_size)) prune(segments, square(block_size), block);
+      if (starts(cell_size)) prune(block, square(cell_size), cell);
       FieldSample sum;
       for (int j = 0; j < grid; ++j) {
         for (int i = 0; i < grid; ++i) {
@@ -102,27 +109,44 @@ void PolylineField::render_tile(const Rect& tile, const List& segments, int grid
   }
 }
 
-/// Keeps, of each shape, what can be the nearest segment anywhere within `radius` of `center`.
-void PolylineField::prune(const List& segments, const Vec2f& center, float radius,
-                          List& kept) const {
+/// Keeps, of each shape, what can be the nearest segment anywhere in the cell. The gradient of a
+/// distance d to a segment turns by at most 1 / d a pixel: seen from afar, the difference of two
+/// distances changes little within the cell.
+void PolylineField::prune(const List& segments, const Rect& cell, List& kept) const {
   kept.clear();
-  const auto distance = [&](const Segment& s) {
+  const Vec2f center(0.5F * static_cast<float>(cell.x0 + cell.x1 - 1),
+                     0.5F * static_cast<float>(cell.y0 + cell.y1 - 1));
+  const float radius = 0.5F * static_cast<float>(cell.width()) * std::sqrt(2.0F) + 0.5F;
+  const auto offset = [&](const Segment& s) -> Vec2f {
     const float along = std::clamp((center - s.a).dot(s.direction), 0.0F, s.length);
-    return (center - s.a - along * s.direction).norm();
+    return center - s.a - along * s.direction;
   };
   for (std::size_t i = 0; i < segments.size();) {
     const std::uint32_t shape = segments_[segments[i]].shape;
     std::size_t end = i;
-    float least = std::numeric_limits<float>::infinity();
+    Vec2f closest = Vec2f::Zero();
+    float squared = std::numeric_limits<float>::infinity();
     for (; end < segments.size() && segments_[segments[end]].shape == shape; ++end) {
-      least = std::min(least, distance(segments_[segments[end]]));
-    }
-    const bool touched = least <= shapes_[shape].largest_half_width + radius;
-    for (; i < end; ++i) {
-      if (touched && distance(segments_[segments[i]]) <= least + 2.0F * radius + 0.01F) {
-        kept.push_back(segments[i]);
+      const Vec2f o = offset(segments_[segments[end]]);
+      if (o.squaredNorm() < squared) {
+        squared = o.squaredNorm();
+        closest = o;
       }
     }
+    const float least = std::sqrt(squared);
+    const bool touched = least <= shapes_[shape].largest_half_width + radius;
+    const float turn = least > 2.0F * radius ? radius / (least - radius) : 2.0F;
+    const Vec2f away = closest / std::max(least, 1e-6F);
+    const float farthest = least + 2.0F * radius + 0.01F;
+    for (; touched && i < end; ++i) {
+      const Vec2f o = offset(segments_[segments[i]]);
+      const float other = o.squaredNorm();
+      if (other > farthest * farthest) continue;
+      const float distance = std::sqrt(other);
+      const float change = (o / std::max(distance, 1e-6F) - away).norm() + turn;
+      if (distance <= least + std::min(change, 2.0F) * radius + 0.01F) kept.push_back(segments[i]);
+    }
+    i = end;
   }
 }
 
@@ -206,7 +230,8 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
   if ((at_start && s.start_cap) || (at_end && s.end_cap)) {
     return pattern_ ? FieldSample() : cap(near);
   }
-  const Along v = along(p, near);
+  // Where along an even line doesn't matter, unless there is a pattern.
+  const Along v = s.even && !pattern_ ? Along{&s, 0.0F, Vec2f::Zero()} : along(p, near);
   const float half_width = v.half_width();
   if (!(distance < half_width) || half_width < 1e-6F) return level(p, shape);
   const bool joint = at_start || at_end;

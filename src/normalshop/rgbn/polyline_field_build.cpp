@@ -121,6 +121,13 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     // At a hairpin there is no mean direction: both keep their own.
     if (mean.norm() > 0.1F) s.end_tangent = next.start_tangent = mean.normalized();
   }
+  const auto constant = [](const Segment& s) {
+    return s.half_width_rate == 0.0F && s.fade_rate == 0.0F;
+  };
+  for (std::size_t i = first; i < segments_.size(); ++i) {
+    Segment& s = segments_[i];
+    s.even = constant(s) && constant(*(&s + s.previous)) && constant(*(&s + s.next));
+  }
 }
 
 void PolylineField::grow_bounds(const Segment& s, float half_width) {

@@ -84,6 +84,7 @@ class PolylineField {
     Vec2f start_tangent, end_tangent;  ///< mean direction at the joints
     bool start_cap = false;
     bool end_cap = false;
+    bool even = false;  ///< neither width nor fade changes along this and its neighbours
     std::uint32_t shape = 0;
     std::ptrdiff_t previous = 0;  ///< from this to its neighbours in the list of segments
     std::ptrdiff_t next = 0;
@@ -110,7 +111,7 @@ class PolylineField {
   void grow_bounds(const Segment& segment, float half_width);
   Bins bin(const Rect& region) const;
   void render_tile(const Rect& tile, const List& segments, int grid, const Write& write) const;
-  void prune(const List& segments, const Vec2f& center, float radius, List& kept) const;
+  void prune(const List& segments, const Rect& cell, List& kept) const;
   Nearest nearest(const Vec2f& p, const List& segments, std::size_t& at) const;
   FieldSample sample(const Vec2f& p, const List& segments) const;
   FieldSample beside(const Vec2f& p, const Shape& shape, const Nearest& nearest) const;

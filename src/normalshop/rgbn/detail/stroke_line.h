@@ -44,12 +44,37 @@ inline float whole_length(const Stroke& stroke, const std::vector<float>& along)
   return is_part(stroke) ? stroke.front().along + stroke.front().rest : along.back();
 }
 
+/// A curve cut finely, without points between which it is all but straight: pieces become no longer
+/// than `longest` and turn by 1/64 at most (longest / 512 pixels off the curve), so that their
+/// edges don't show. Where pressure changes, and at corners, points stay.
+inline Stroke without_flat_points(const Stroke& curve, float longest) {
+  constexpr float turn = 1.0F / 64.0F;
+  if (curve.size() < 3) return curve;
+  Stroke out{curve.front()};
+  Vec2f first = (curve[1].position - curve[0].position).normalized();
+  for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
+    const Vec2f next = curve[i + 1].position - curve[i].position;
+    const float length = next.norm();
+    const float pressure = out.back().pressure;
+    const bool flat = first.dot(next) > 0.0F && std::abs(cross(first, next)) <= turn * length;
+    if (flat && curve[i].pressure == pressure && curve[i + 1].pressure == pressure &&
+        (curve[i + 1].position - out.back().position).norm() <= longest) {
+      continue;
+    }
+    out.push_back(curve[i]);
+    first = next / std::max(length, 1e-6F);
+  }
+  out.push_back(curve.back());
+  return out;
+}
+
 /// The line that a stroke of this width follows, for options with `smooth` and `closed`.
 template <class Options>
 Stroke line_of(const Stroke& stroke, const Options& options) {
   if (!options.smooth || is_part(stroke)) return stroke;
   const float spacing = std::clamp(options.width / 8.0F, 1.0F, 3.0F);
-  return smooth_stroke(stroke, spacing, options.closed ? StrokeEnds::Closed : StrokeEnds::Open);
+  const StrokeEnds ends = options.closed ? StrokeEnds::Closed : StrokeEnds::Open;
+  return without_flat_points(smooth_stroke(stroke, spacing, ends), options.width / 8.0F);
 }
 
 }  // namespace normalshop
