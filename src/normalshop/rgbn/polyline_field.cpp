@@ -10,7 +10,7 @@ namespace normalshop {
 
 namespace {
 
-constexpr int cell_size = 8;
+constexpr int cell_size = PlainPlaces::count;
 /// Cells of cells.
 constexpr int block_size = 32;
 /// Nearer to the line than this, its own orientation says where inside is.
@@ -70,42 +70,85 @@ void PolylineField::render_tile(const Rect& tile, const List& segments, int grid
     for (int y = tile.y0; y < tile.y1; ++y) write(tile.x0, y, row);
     return;
   }
-  const auto lists = [&](int size) {
-    return std::vector<List>(static_cast<std::size_t>((tile.width() + size - 1) / size));
+  const auto columns = [&](int size) {
+    return static_cast<std::size_t>((tile.width() + size - 1) / size);
   };
-  std::vector<List> blocks = lists(block_size);
-  std::vector<List> cells = lists(cell_size);
-  const float scale = 1.0F / static_cast<float>(grid * grid);
+  std::vector<List> blocks(columns(block_size));
+  std::vector<Cell> cells(columns(cell_size));
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
+    for (int x = tile.x0; x < tile.x1; x += cell_size) {
       const auto starts = [&](int size) {
         return (x - tile.x0) % size == 0 && (y - tile.y0) % size == 0;
       };
       const auto square = [&](int size) { return Rect{x, y, x + size, y + size}; };
       List& block = blocks[static_cast<std::size_t>((x - tile.x0) / block_size)];
-      List& cell = cells[static_cast<std::size_t>((x - tile.x0) / cell_size)];
+      Cell& cell = cells[static_cast<std::size_t>((x - tile.x0) / cell_size)];
       if (starts(block_size)) prune(segments, square(block_size), block);
-      if (starts(cell_size)) prune(block, square(cell_size), cell);
-      FieldSample sum;
-      for (int j = 0; j < grid; ++j) {
-        for (int i = 0; i < grid; ++i) {
-          const float dx = (static_cast<float>(i) + 0.5F) / static_cast<float>(grid) - 0.5F;
-          const float dy = (static_cast<float>(j) + 0.5F) / static_cast<float>(grid) - 0.5F;
-          const FieldSample s =
-              sample({static_cast<float>(x) + dx, static_cast<float>(y) + dy}, cell);
-          sum.height += s.height;
-          sum.slope += s.slope;
-          sum.coverage += s.coverage;
-        }
+      if (starts(cell_size)) {
+        prune(block, square(cell_size), cell.segments);
+        find_plain(grid, cell);
       }
-      if (grid > 1) {
-        sum.height *= scale;
-        sum.slope *= scale;
-        sum.coverage *= scale;
+      const int count = std::min(cell_size, tile.x1 - x);
+      const std::span<FieldSample> out(row.data() + (x - tile.x0), static_cast<std::size_t>(count));
+      if (!cell.plain.empty()) {
+        plain_row(x, y, cell, out);
+        continue;
       }
-      row[static_cast<std::size_t>(x - tile.x0)] = sum;
+      for (int i = 0; i < count; ++i) {
+        out[static_cast<std::size_t>(i)] = pixel(x + i, y, cell.segments, grid);
+      }
     }
     write(tile.x0, y, row);
+  }
+}
+
+FieldSample PolylineField::pixel(int x, int y, const List& segments, int grid) const {
+  FieldSample sum;
+  for (int j = 0; j < grid; ++j) {
+    for (int i = 0; i < grid; ++i) {
+      const float dx = (static_cast<float>(i) + 0.5F) / static_cast<float>(grid) - 0.5F;
+      const float dy = (static_cast<float>(j) + 0.5F) / static_cast<float>(grid) - 0.5F;
+      const FieldSample s =
+          sample({static_cast<float>(x) + dx, static_cast<float>(y) + dy}, segments);
+      sum.height += s.height;
+      sum.slope += s.slope;
+      sum.coverage += s.coverage;
+    }
+  }
+  if (grid == 1) return sum;
+  const float scale = 1.0F / static_cast<float>(grid * grid);
+  return {sum.height * scale, sum.slope * scale, sum.coverage * scale};
+}
+
+void PolylineField::find_plain(int grid, Cell& cell) const {
+  cell.plain.clear();
+  const bool has_level = profile_.level() != 0.0F || coverage_ == FieldCoverage::Inside;
+  if (grid > 1 || pattern_ || has_level || cell.segments.empty()) return;
+  const Segment& first = segments_[cell.segments.front()];
+  if (shapes_[first.shape].closed || first.half_width < 1e-6F) return;
+  for (const std::uint32_t i : cell.segments) {
+    const Segment& s = segments_[i];
+    if (s.shape != first.shape || !s.even || s.start_cap || s.end_cap ||
+        s.half_width != first.half_width || s.fade != first.fade) {
+      cell.plain.clear();
+      return;
+    }
+    cell.plain.push_back({s.a.x(), s.a.y(), s.direction.x(), s.direction.y(), s.length,
+                          s.start_tangent.x(), s.start_tangent.y(), s.end_tangent.x(),
+                          s.end_tangent.y()});
+  }
+}
+
+/// As pixel() does it.
+void PolylineField::plain_row(int x, int y, const Cell& cell, std::span<FieldSample> row) const {
+  const Segment& s = segments_[cell.segments.front()];
+  PlainPlaces places;
+  plain_places(cell.plain, s.half_width, static_cast<float>(x), static_cast<float>(y), places);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    row[i] = {};
+    if (places.u[i] > 1.0F) continue;
+    row[i] = across(places.u[i], {places.x[i], places.y[i]}, s);
+    if (row[i].height == 0.0F) row[i].slope = Vec2f::Zero();
   }
 }
 
@@ -244,12 +287,21 @@ FieldSample PolylineField::beside(const Vec2f& p, const Shape& shape, const Near
   }
   const float u = side * distance / half_width;
   if (pattern_) return patterned(shape, u, side * away, v);
+  if (s.even) return across(u, side * away, s);
   const Profile::Value h = profile_.at(u, jump_share(half_width));
   const float amplitude = height_ * v.fade();
   const float along_rate = height_ * v.segment->fade_rate * h.height -
                            amplitude * h.slope * u * v.segment->half_width_rate / half_width;
   const Vec2f gradient = amplitude * h.slope / half_width * side * away + along_rate * v.gradient;
   return {amplitude * h.height, {gradient.x(), -gradient.y()}, coverage(u, v.fade())};
+}
+
+/// Where nothing changes along the line.
+FieldSample PolylineField::across(float u, const Vec2f& gradient, const Segment& s) const {
+  const Profile::Value h = profile_.at(u, jump_share(s.half_width));
+  const float amplitude = height_ * s.fade;
+  const Vec2f slope = amplitude * h.slope / s.half_width * gradient;
+  return {amplitude * h.height, {slope.x(), -slope.y()}, coverage(u, s.fade)};
 }
 
 FieldSample PolylineField::patterned(const Shape& shape, float u, const Vec2f& away,

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "normalshop/core/image.h"
+#include "normalshop/rgbn/detail/polyline_kernels.h"
 #include "normalshop/rgbn/profile.h"
 
 /// Height fields around polylines: what pen and emboss have in common. Private to this floor.
@@ -105,6 +107,12 @@ class PolylineField {
     std::vector<List> tiles;
   };
 
+  /// What matters in a few pixels by a few.
+  struct Cell {
+    List segments;
+    std::vector<PlainSegment> plain;  ///< the same, where one even line without ends is all
+  };
+
   void add(const FieldShape& shape);
   void add_contour(const std::vector<FieldVertex>& contour, bool closed);
   void fill_bands(Shape& shape, std::size_t first, float bottom) const;
@@ -112,9 +120,13 @@ class PolylineField {
   Bins bin(const Rect& region) const;
   void render_tile(const Rect& tile, const List& segments, int grid, const Write& write) const;
   void prune(const List& segments, const Rect& cell, List& kept) const;
+  void find_plain(int grid, Cell& cell) const;
+  void plain_row(int x, int y, const Cell& cell, std::span<FieldSample> row) const;
+  FieldSample pixel(int x, int y, const List& segments, int grid) const;
   Nearest nearest(const Vec2f& p, const List& segments, std::size_t& at) const;
   FieldSample sample(const Vec2f& p, const List& segments) const;
   FieldSample beside(const Vec2f& p, const Shape& shape, const Nearest& nearest) const;
+  FieldSample across(float u, const Vec2f& gradient, const Segment& segment) const;
   FieldSample cap(const Nearest& nearest) const;
   FieldSample patterned(const Shape& shape, float u, const Vec2f& away, const Along& along) const;
   static Along along(const Vec2f& p, const Nearest& nearest);
