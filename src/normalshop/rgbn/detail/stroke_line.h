@@ -45,10 +45,10 @@ inline float whole_length(const Stroke& stroke, const std::vector<float>& along)
 }
 
 /// A curve cut finely, without points between which it is all but straight: pieces become no longer
-/// than `longest` and turn by 1/64 at most (longest / 512 pixels off the curve), so that their
-/// edges don't show. Where pressure changes, and at corners, points stay.
+/// than `longest` and turn by 1/512 at most: a tenth of a degree, which no highlight shows as
+/// edges. Where pressure changes, and at corners, points stay.
 inline Stroke without_flat_points(const Stroke& curve, float longest) {
-  constexpr float turn = 1.0F / 64.0F;
+  constexpr float turn = 1.0F / 512.0F;
   if (curve.size() < 3) return curve;
   Stroke out{curve.front()};
   Vec2f first = (curve[1].position - curve[0].position).normalized();
