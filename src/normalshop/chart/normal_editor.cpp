@@ -21,16 +21,6 @@ bool NormalEditor::edit_weighed(TexelLanes& lanes) const {
   return true;
 }
 
-TexelWrite NormalEditor::write_of(const TexelBatch& batch, int i, std::uint32_t texel) const {
-  const auto k = static_cast<std::size_t>(i);
-  TexelWrite write{texel, batch.weight[k], batch.result.get(i), batch.turn[k]};
-  if (facing_ == Facing::Told) {
-    const Vec3f base = batch.base.get(i);
-    write.facing = base.z() / base.norm();
-  }
-  return write;
-}
-
 template <class Item>
 void NormalEditor::collect(const TexelBatch& batch, const PerLane<const Item*>& items,
                            std::vector<TexelWrite>& out) const {

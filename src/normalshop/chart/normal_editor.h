@@ -35,7 +35,15 @@ class NormalEditor {
   /// The same of lanes whose weight is there already.
   bool edit_weighed(TexelLanes& lanes) const;
   /// The write of lane i, on which the edit acts.
-  TexelWrite write_of(const TexelBatch& batch, int i, std::uint32_t texel) const;
+  TexelWrite write_of(const TexelBatch& batch, int i, std::uint32_t texel) const {
+    const auto k = static_cast<std::size_t>(i);
+    TexelWrite write{texel, batch.weight[k], batch.result.get(i), batch.turn[k]};
+    if (facing_ == Facing::Told) {
+      const Vec3f base = batch.base.get(i);
+      write.facing = base.z() / base.norm();
+    }
+    return write;
+  }
 
   /// One write for each gutter texel that stands for a point of a wanted(triangle) and that the
   /// edit changes: it takes the change of that point across the seam, in the frame of the chart

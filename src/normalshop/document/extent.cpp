@@ -22,8 +22,9 @@ Extent extent_of(const std::vector<UnitStroke>& strokes, float margin) {
 
 namespace {
 
-/// A smooth curve is another one up to two points before one that moves; its ends are drawn anew.
-constexpr std::size_t points_before = 4;
+/// A smooth curve is another one from two points before one that moves on; the third shapes it
+/// there.
+constexpr std::size_t points_before = 3;
 
 bool same(const UnitPoint& a, const UnitPoint& b) {
   return a.position == b.position && a.pressure == b.pressure;
