@@ -133,7 +133,7 @@ Vec2f TilePlaces::add_point(int tile, const SurfacePoint& point) {
   const std::size_t corner = 3 * static_cast<std::size_t>(point.triangle);
   const Vec3f position = interpolate(mesh_.position(corner), mesh_.position(corner + 1),
                                      mesh_.position(corner + 2), point.b1, point.b2);
-  const Vec2f p = grid_.project(position).head<2>();
+  Vec2f p = grid_.project(position).head<2>();
   grow(tile, p, p);
   return p;
 }

@@ -37,12 +37,14 @@ std::vector<SeamEdge> seams_near(const Mesh& mesh, std::span<const SeamEdge> sea
 /// The maps as they are, for little: they share what nobody edits.
 std::vector<NormalMap> copies(const StorageAtlas& storage) {
   std::vector<NormalMap> maps;
+  maps.reserve(storage.sets.size());
   for (const StorageSet& set : storage.sets) maps.push_back(set.normals);
   return maps;
 }
 
 std::vector<const NormalMap*> pointers(const std::vector<NormalMap>& maps) {
   std::vector<const NormalMap*> out;
+  out.reserve(maps.size());
   for (const NormalMap& map : maps) out.push_back(&map);
   return out;
 }

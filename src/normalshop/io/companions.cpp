@@ -72,7 +72,7 @@ std::string Companions::write(const std::string& reference, std::string_view byt
 
 /// Every tile's file, as far as they exist.
 std::string Companions::copy_tiles(const std::string& reference) {
-  const std::string pattern = place(reference);
+  std::string pattern = place(reference);
   if (reserved(folder_ / pattern)) return pattern;
   for (int tile = first_tile_number; tile <= last_tile_number; ++tile) {
     std::error_code error;

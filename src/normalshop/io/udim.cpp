@@ -29,8 +29,9 @@ std::string text_of(std::string_view mark, int tile) {
 
 /// The tile's upper left corner in the mesh's UVs, whose v runs down.
 Vec2f corner_of(int tile) {
-  return {static_cast<float>((tile - first_tile_number) % 10),
-          -static_cast<float>((tile - first_tile_number) / 10)};
+  const int column = (tile - first_tile_number) % 10;
+  const int row = (tile - first_tile_number) / 10;
+  return {static_cast<float>(column), -static_cast<float>(row)};
 }
 
 class TileSplit {

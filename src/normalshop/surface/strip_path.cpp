@@ -224,7 +224,7 @@ class Detours {
                                         : position_at(mesh_, strip_.end).cast<double>()) -
         vertex;
     Detour detour{first, last + 1, {}, 0.0};
-    const Detour none = detour;
+    Detour none = detour;
     if (before.isZero() || after.isZero()) return none;
     constexpr double limit = std::numbers::pi - straight_angle;
     std::uint32_t edge = left ? previous_corner(leave) : next_corner(leave);
