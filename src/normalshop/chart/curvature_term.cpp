@@ -1,5 +1,6 @@
 #include "normalshop/chart/curvature_term.h"
 
+#include <cassert>
 #include <cmath>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "normalshop/chart/live_set.h"
-#include "normalshop/core/parallel.h"
 
 namespace normalshop {
 

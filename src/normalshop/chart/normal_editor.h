@@ -27,8 +27,6 @@ class NormalEditor {
   const Mesh& mesh() const { return mesh_; }
   const EditSampler& sampler() const { return sampler_; }
   const TexelMap& texels() const { return texels_; }
-  const NormalMap& before() const { return before_; }
-  NormalSpace space() const { return space_; }
 
   /// Fills result and turn of the lanes on which the edit acts; false where it acts on none.
   bool edit(TexelLanes& lanes) const;

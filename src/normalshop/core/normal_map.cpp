@@ -1,6 +1,7 @@
 #include "normalshop/core/normal_map.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -161,6 +162,7 @@ bool NormalMap::restore(int x, int y, const NormalMap& earlier) {
   const Tile* was = earlier.tile(x, y);
   const std::size_t i = index_in_tile(x, y);
   const bool was_edited = was != nullptr && was->edited[i];
+  assert(t || was == nullptr);
   if (t.get() == was || (!t->edited[i] && !was_edited)) return false;
   if (t.use_count() != 1) t = own_tile(t.get());
   t->edited[i] = was_edited;

@@ -44,8 +44,8 @@ CodeRange code_range(CodeType type, const NormalConvention& convention);
 /// above them. A texel that no edit reached is exported with its imported code, bit for bit.
 ///
 /// Copies share codes and tiles until one of them edits a tile, so that a copy keeps the state of
-/// now for little. Normals are given in the map's own space with y up. Texel (x, y) counts from the
-/// top left.
+/// now for little. None may be let go of by another thread while one of them is edited. Normals are
+/// given in the map's own space with y up. Texel (x, y) counts from the top left.
 class NormalMap {
  public:
   static constexpr int tile_size = 64;

@@ -163,6 +163,11 @@ EditReport apply_along_strokes(const Edit& edit, const Mesh& mesh, std::span<con
                                StorageAtlas& storage) {
   Stopwatch watch;
   const std::vector<StrokeView> views = view_strokes(edit, mesh);
+  if (views.empty()) {
+    throw InvalidInput(edit.path +
+                       ".strokes must follow surface with a front side: the model's normals must "
+                       "point outwards there");
+  }
   SurfaceEdit all(mesh, storage);
   all.report.times.pull = watch.lap();
   Edit part = edit;

@@ -42,8 +42,8 @@ struct EditReport {
 
 class LiveEdit;
 
-/// A model, its storage atlas and the edits made to it. All changes go through apply(): the command
-/// line, the studio and scripts use this facade and nothing else.
+/// A model, its storage atlas and the edits made to it. All changes go through apply() and begin():
+/// the command line, the studio and scripts use this facade and nothing else.
 class Document {
  public:
   /// One texture set's maps.

@@ -269,11 +269,13 @@ std::size_t apply_colors(const Edit& edit, const OperatorInput& input, MaskView 
   return changed;
 }
 
-MaskImage spray_shares(SlopeView slopes, const EffectiveAngles& angles) {
-  MaskImage shares(slopes.width(), slopes.height());
+/// Of the pixels of a window.
+MaskImage spray_shares(const NormalMap& normals, const Rect& window,
+                       const EffectiveAngles& angles) {
+  MaskImage shares(window.width(), window.height());
   const SprayShare share(angles);
   for_pixels(shares.rect(), [&](int x, int y) {
-    shares(x, y) = share(1.0F / std::sqrt(1.0F + slopes(x, y).squaredNorm()));
+    shares(x, y) = share(normals.normal(window.x0 + x, window.y0 + y).z());
   });
   return shares;
 }
@@ -343,11 +345,8 @@ EditReport ImageDocument::apply(const Edit& edit) {
   report.times.pull = watch.lap();
   OperatorResult result = empty_result(placed.grid.width(), placed.grid.height());
   run_operator(placed.edit, input, result);
-  MaskImage spray;
   if (edit.spray) {
-    spray =
-        spray_shares(pull_slopes(images_.normals, placed, DetailsRule::Keep, weight), *edit.spray);
-    multiply(spray, result);
+    multiply(spray_shares(images_.normals, placed.window, *edit.spray), result);
   }
   report.times.operate = watch.lap();
   if (edit.strength > 0.0F) {

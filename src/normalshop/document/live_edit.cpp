@@ -29,8 +29,10 @@ OpenChart open_facing(const Edit& edit, const View& view, const Document& docume
   return open;
 }
 
-Edit with_window(Edit edit) {
+/// Nothing is drawn yet.
+Edit without_strokes(Edit edit) {
   edit.window = ChartWindow::View;
+  edit.strokes.clear();
   return edit;
 }
 
@@ -39,7 +41,7 @@ Edit with_window(Edit edit) {
 struct LiveEdit::State {
   State(Document& owner, Edit begun)
       : document(owner),
-        edit(with_window(std::move(begun))),
+        edit(without_strokes(std::move(begun))),
         view(one_view(edit, owner.mesh())),
         open(open_facing(edit, view, owner)),
         result(empty_result(open.chart.grid.width(), open.chart.grid.height())),
@@ -61,9 +63,15 @@ LiveEdit::LiveEdit(Document& document, Edit edit)
 
 LiveEdit::~LiveEdit() { cancel(); }
 
-const Edit& LiveEdit::edit() const { return state_->edit; }
+const Edit& LiveEdit::edit() const {
+  assert(state_);
+  return state_->edit;
+}
 
-const ChartGrid& LiveEdit::grid() const { return state_->open.chart.grid; }
+const ChartGrid& LiveEdit::grid() const {
+  assert(state_);
+  return state_->open.chart.grid;
+}
 
 /// Where strokes that have taken the place of others may have changed something.
 Rect LiveEdit::changed_region(const std::vector<UnitStroke>& before) const {
@@ -94,64 +102,81 @@ void LiveEdit::redraw(const Rect& region) {
   operate(state_->edit, state_->open, input, result);
 }
 
-const std::vector<MapTile>& LiveEdit::draw(std::vector<UnitStroke> strokes) {
-  Edit& edit = state_->edit;
-  edit.operation->check_strokes(strokes, edit.path + ".strokes");
-  std::swap(edit.strokes, strokes);
-  const Rect region = changed_region(strokes);
-  if (region.empty()) return none_;
-  Stopwatch watch;
-  try {
-    check_near_view(edit, state_->view);
-    redraw(region);
-  } catch (const InvalidInput&) {
-    std::swap(edit.strokes, strokes);
-    redraw(region);
-    throw;
-  }
+const std::vector<MapTile>& LiveEdit::push(const Rect& region) {
   EditTimes& times = state_->open.report.times;
+  Stopwatch watch;
+  redraw(region);
   times.operate += watch.lap();
   const std::vector<MapTile>& tiles = state_->push.update(region, state_->document.storage_);
   times.push += watch.lap();
   return tiles;
 }
 
+const std::vector<MapTile>& LiveEdit::draw(std::vector<UnitStroke> strokes) {
+  assert(state_);
+  Edit& edit = state_->edit;
+  edit.operation->check_strokes(strokes, edit.path + ".strokes");
+  std::swap(edit.strokes, strokes);
+  const Rect region = changed_region(strokes);
+  if (region.empty()) return none_;
+  try {
+    check_near_view(edit, state_->view);
+    return push(region);
+  } catch (...) {
+    std::swap(edit.strokes, strokes);
+    push(region);
+    throw;
+  }
+}
+
+/// What apply() does after its push. Whatever can fail for want of memory comes first.
+EditReport LiveEdit::complete() {
+  const State& state = *state_;
+  const OpenChart& open = state.open;
+  Document& document = state.document;
+  Stopwatch watch;
+  EditReport report = open.report;
+  const OperatorInput input = operator_input(state.edit, open);
+  const Rect region = changed_region({});
+  check_on_surface(state.edit, input.strokes, open.chart, region, open.place.model);
+  const ColorResult colors = operate_on_colors(state.edit, open, input);
+  if (state.edit.mode == EditMode::Base) {
+    report.relief = CurvatureTerm(open.chart.base_normal, open.chart.weight)
+                        .measure(region, state.result.change);
+  }
+  report.times.operate += watch.lap();
+  document.log_.reserve(document.log_.size() + 1);
+  if (!colors.change.empty()) prepare_colors(document.mesh_, document.storage_);
+  report.pushed = state.push.result(document.storage_);
+  fit_seams(document.mesh_, document.seams_, open.chart.grid, region, state.push.before(),
+            document.storage_);
+  if (!colors.change.empty()) {
+    report.colors_changed =
+        push_colors(document.mesh_, open.chart, {colors.change, colors.region}, document.storage_)
+            .changed;
+  }
+  report.times.push += watch.lap();
+  return report;
+}
+
 EditReport LiveEdit::finish() {
+  assert(state_);
   State& state = *state_;
   Document& document = state.document;
   const bool whole = state.edit.mirror || state.edit.curvature == CurvatureRule::Keep;
-  if (whole || state.edit.strokes.empty()) {
+  if (whole || state.edit.strokes.empty() || state.edit.strength == 0.0F) {
     const Edit edit = state.edit;
     cancel();
     return document.apply(edit);
   }
-  const OpenChart& open = state.open;
-  Stopwatch watch;
-  EditReport report = open.report;
+  EditReport report;
   try {
-    const OperatorInput input = operator_input(state.edit, open);
-    const Rect region = changed_region({});
-    check_on_surface(state.edit, input.strokes, open.chart, region, open.place.model);
-    const ColorResult colors = operate_on_colors(state.edit, open, input);
-    report.times.operate += watch.lap();
-    report.pushed = state.push.result(document.storage_);
-    fit_seams(document.mesh_, document.seams_, open.chart.grid, region, state.push.before(),
-              document.storage_);
-    if (!colors.change.empty()) {
-      report.colors_changed =
-          push_colors(document.mesh_, open.chart, {colors.change, colors.region}, document.storage_)
-              .changed;
-    }
+    report = complete();
   } catch (...) {
     cancel();
     throw;
   }
-  if (state.edit.mode == EditMode::Base) {
-    report.relief = CurvatureTerm(open.chart.base_normal, open.chart.weight)
-                        .measure(changed_region({}), state.result.change);
-  }
-  report.times.push += watch.lap();
-  document.log_.push_back(state.edit);
+  document.log_.push_back(std::move(state.edit));
   document.live_ = false;
   state_.reset();
   return report;

@@ -10,8 +10,9 @@ namespace normalshop {
 
 /// An edit while its strokes are being drawn: the document shows at any time what apply() would
 /// make of the strokes so far, each call at the price of what has changed since the last one. Goes
-/// by Document::begin(). Until finish() or cancel() the document takes no other edit and must not
-/// move; an edit that is let go of without either is cancelled.
+/// by Document::begin(). Until finish() or cancel(), after which there is nothing more to ask of
+/// it, the document takes no other edit and must not move or end; an edit that is let go of without
+/// either is cancelled.
 ///
 /// Seams are brought together, colours moved, the curvature term kept and mirror images made by
 /// finish() alone.
@@ -41,6 +42,8 @@ class LiveEdit {
   friend class Document;
   LiveEdit(Document& document, Edit edit);
   void redraw(const Rect& region);
+  const std::vector<MapTile>& push(const Rect& region);
+  EditReport complete();
   Rect changed_region(const std::vector<UnitStroke>& before) const;
 
   struct State;

@@ -188,9 +188,10 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
   check_near_view(edit, view);
   OpenChart open;
   open.place = find_place(edit, cover, box);
-  const Extent shown = edit.window == ChartWindow::View
-                           ? intersect(open.place.view, open.place.model)
-                           : open.place.extent;
+  const Extent shown =
+      edit.window == ChartWindow::View
+          ? intersect(open.place.view, widened(open.place.model, 1e-3F * box.diagonal()))
+          : open.place.extent;
   const CountedTexels counted =
       edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
   // What reads no details loses none to pixels that are longer than texels seen at an angle.

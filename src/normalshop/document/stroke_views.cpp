@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "normalshop/core/error.h"
 #include "normalshop/document/surface_trace.h"

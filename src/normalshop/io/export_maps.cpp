@@ -99,7 +99,6 @@ class MapWriter {
     const char* extension = normal_extension(set, type, options_.preset);
     const std::string name = map_name(textures, "normal", extension);
     progress_.at(0.0, "encoding maps");
-    check_not_input(opened_, staged_.folder() / name);
     const ImageWriteOptions how{.half_float =
                                     set.half_float && !options_.type && name.ends_with(".exr")};
     const NormalConvention convention = target_convention(map.convention(), options_.preset);
@@ -107,6 +106,7 @@ class MapWriter {
     if (map.convention().space == convention.space && !levels) {
       // Row by row: a large map is not in memory twice.
       progress_.at(0.5, "writing maps");
+      check_not_input(opened_, staged_.folder() / name);
       write_image(
           staged_.path() / name, map.height(),
           [&](int y, int count) { return map.encode_rows(y, count, type, convention); }, how);
@@ -159,7 +159,6 @@ class MapWriter {
     const bool floats = codes.type() == CodeType::F32;
     const char* extension = floats ? ".exr" : ".png";
     const std::string name = map_name(textures, "color", extension);
-    check_not_input(opened_, staged_.folder() / name);
     put(name, codes, {});
     references[i].color = map_reference(textures, "color", extension);
     if (floats && for_viewers()) notes_.push_back(name + ": glTF viewers read only PNG and JPEG");
@@ -167,6 +166,7 @@ class MapWriter {
 
   void put(const std::string& name, const RawImage& codes, const ImageWriteOptions& how) {
     progress_.at(0.5, "writing maps");
+    check_not_input(opened_, staged_.folder() / name);
     write_image(staged_.path() / name, codes, how);
     files.push_back(staged_.path() / name);
   }

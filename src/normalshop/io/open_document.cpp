@@ -201,10 +201,6 @@ void note_shared_texels(OpenedDocument& opened) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// The maps that a model is opened with, one of each kind a texture set.
 struct ChosenMaps {
   std::vector<std::optional<MapSource>> normals;
