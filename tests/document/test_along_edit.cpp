@@ -81,7 +81,7 @@ TEST(AlongEdit, along_the_view_is_the_mode_view) {
 TEST(AlongEdit, along_its_normal_is_the_mode_base_on_a_plane) {
   const std::string fields =
       R"("operator": "smooth", "options": {"sigma": 0.02}, "view": {"direction": [0.3, 0.2, 1]})";
-  Document base = document(plane_grid(2), noise_map(along_size, CodeType::F32));
+  Document base = document(plane_grid(2), noise_map(along_size, CodeType::U16));
   Document fixed = base;
   base.apply(edit(fields + R"(, "mode": "base")"));
   fixed.apply(edit(fields + along("[0, 0, 1]")));

@@ -320,7 +320,7 @@ TEST(CurvedReliefLimits, threads_do_not_matter) {
 }
 
 TEST(CurvedReliefLimits, a_plane_has_no_such_term) {
-  Document drop = document(plane_grid(2), noise_map(relief_map, CodeType::F32));
+  Document drop = document(plane_grid(2), noise_map(relief_map, CodeType::U16));
   Document keep = drop;
   const std::string pen = pen_of(0.1, 0.4, "[[-0.2, 0], [0.2, 0.1]]") + R"(, "mode": "base")";
   EXPECT_EQ(drop.apply(edit(pen)).relief.largest, 0.0F);
