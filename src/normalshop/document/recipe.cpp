@@ -74,17 +74,6 @@ UnitPoint read_point(const FieldReader& reader) {
   return point;
 }
 
-std::vector<UnitStroke> read_strokes(const FieldReader& reader) {
-  std::vector<UnitStroke> strokes;
-  for (const FieldReader& item : reader.items()) {
-    UnitStroke stroke;
-    for (const FieldReader& point : item.items()) stroke.push_back(read_point(point));
-    if (stroke.empty()) item.fail("a list of at least one point");
-    strokes.push_back(std::move(stroke));
-  }
-  return strokes;
-}
-
 SurfaceStrokePoint read_surface_point(const FieldReader& reader) {
   const Value::Array* array = reader.value().array();
   if (array == nullptr || (array->size() != 3 && array->size() != 4)) {
@@ -96,11 +85,14 @@ SurfaceStrokePoint read_surface_point(const FieldReader& reader) {
   return point;
 }
 
-std::vector<SurfaceStroke> read_surface_strokes(const FieldReader& reader) {
-  std::vector<SurfaceStroke> strokes;
+/// Lists of at least one point each, which read(reader) reads.
+template <class Read>
+auto read_strokes(const FieldReader& reader, const Read& read) {
+  using List = std::vector<decltype(read(reader))>;
+  std::vector<List> strokes;
   for (const FieldReader& item : reader.items()) {
-    SurfaceStroke stroke;
-    for (const FieldReader& point : item.items()) stroke.push_back(read_surface_point(point));
+    List stroke;
+    for (const FieldReader& point : item.items()) stroke.push_back(read(point));
     if (stroke.empty()) item.fail("a list of at least one point");
     strokes.push_back(std::move(stroke));
   }
@@ -231,9 +223,10 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
         static_cast<ChartWindow>(reader.required("window").one_of(names_list<ChartWindow>()));
   }
   const bool surface = std::holds_alternative<SurfaceView>(edit.view);
-  if (reader.has("strokes") && !surface) edit.strokes = read_strokes(reader.required("strokes"));
+  if (reader.has("strokes") && !surface)
+    edit.strokes = read_strokes(reader.required("strokes"), read_point);
   if (reader.has("strokes") && surface && edit.operation->follows_surface()) {
-    edit.surface_strokes = read_surface_strokes(reader.required("strokes"));
+    edit.surface_strokes = read_strokes(reader.required("strokes"), read_surface_point);
   }
   if (reader.has("mirror")) edit.mirror = read_mirror(reader.required("mirror"));
   if (surface) {
