@@ -49,15 +49,11 @@ void LiveSet::find_seen(const std::vector<int>& tiles) {
   for (const int t : tiles) {
     if (!tiles_[static_cast<std::size_t>(t)].found) unknown.push_back(t);
   }
-  const int columns = NormalMap::tiles_along(before_.width());
   parallel_for(unknown.size(), 1, [&](std::size_t begin, std::size_t end) {
     TexelRows rows(editor_.mesh(), editor_.sampler().grid(), editor_.texels(), all_triangles);
     for (std::size_t i = begin; i < end; ++i) {
       Tile& tile = tiles_[static_cast<std::size_t>(unknown[i])];
-      const int x = unknown[i] % columns * side;
-      const int y = unknown[i] / columns * side;
-      const Rect texels =
-          intersect({x, y, x + side, y + side}, {0, 0, before_.width(), before_.height()});
+      const Rect texels = tile_texels(unknown[i], before_.width(), before_.height());
       rows.visit(texels, [&](TexelLanes& lanes) { append_seen(everywhere_, lanes, tile.seen); });
       tile.found = true;
     }

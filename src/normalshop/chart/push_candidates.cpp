@@ -8,12 +8,6 @@
 
 namespace normalshop {
 
-namespace {
-
-constexpr int tile_side = NormalMap::tile_size;
-
-}  // namespace
-
 PushCandidates::PushCandidates(const Mesh& mesh, const EditReach& reach, std::uint32_t texture_set,
                                int width, int height)
     : mesh_(mesh),
@@ -57,9 +51,7 @@ std::vector<Rect> PushCandidates::tiles() const {
   std::vector<Rect> out;
   for (int i = 0; i < static_cast<int>(tiles_.size()); ++i) {
     if (tiles_[static_cast<std::size_t>(i)] == 0) continue;
-    const int x = i % tile_columns_ * tile_side;
-    const int y = i / tile_columns_ * tile_side;
-    out.push_back({x, y, std::min(x + tile_side, width_), std::min(y + tile_side, height_)});
+    out.push_back(tile_texels(i, width_, height_));
   }
   return out;
 }

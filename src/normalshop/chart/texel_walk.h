@@ -6,6 +6,7 @@
 
 #include "normalshop/chart/storage.h"
 #include "normalshop/chart/texel_writes.h"
+#include "normalshop/chart/triangle_tiles.h"
 
 /// Walks over the texels of a texture set, private to floor 4.
 namespace normalshop {
@@ -148,15 +149,11 @@ class TexelRows {
 template <class Wanted, class Visit>
 void walk_owned(const Mesh& mesh, const ChartGrid& grid, const TexelMap& map, const Wanted& wanted,
                 const Visit& visit) {
-  constexpr int side = NormalMap::tile_size;
-  const int columns = NormalMap::tiles_along(map.width());
-  const int tile_rows = NormalMap::tiles_along(map.height());
-  parallel_for(static_cast<std::size_t>(columns * tile_rows), 4, [&](std::size_t a, std::size_t b) {
+  const int tiles = NormalMap::tiles_along(map.width()) * NormalMap::tiles_along(map.height());
+  parallel_for(static_cast<std::size_t>(tiles), 4, [&](std::size_t a, std::size_t b) {
     TexelRows rows(mesh, grid, map, wanted);
     for (std::size_t i = a; i < b; ++i) {
-      const int x = static_cast<int>(i) % columns * side;
-      const int y = static_cast<int>(i) / columns * side;
-      rows.visit({x, y, std::min(x + side, map.width()), std::min(y + side, map.height())}, visit);
+      rows.visit(tile_texels(static_cast<int>(i), map.width(), map.height()), visit);
     }
   });
 }

@@ -7,7 +7,7 @@
 #include "normalshop/core/sample.h"
 #include "normalshop/surface/mesh.h"
 
-/// What of an atlas triangles cover, private to floor 4.
+/// The tiles of an atlas, and what of it triangles cover, private to floor 4.
 namespace normalshop {
 
 /// Do all corners' base normals point away from the viewer?
@@ -16,6 +16,15 @@ inline bool faces_away(const Mesh& mesh, std::uint32_t triangle, const Vec3f& to
   return mesh.normals[corner].dot(toward_viewer) <= 0.0F &&
          mesh.normals[corner + 1].dot(toward_viewer) <= 0.0F &&
          mesh.normals[corner + 2].dot(toward_viewer) <= 0.0F;
+}
+
+/// The texels of a tile of NormalMap::tile_size, by its index row by row, in a map of that size.
+inline Rect tile_texels(int tile, int width, int height) {
+  constexpr int side = NormalMap::tile_size;
+  const int columns = NormalMap::tiles_along(width);
+  const int x = tile % columns * side;
+  const int y = tile / columns * side;
+  return {x, y, std::min(x + side, width), std::min(y + side, height)};
 }
 
 /// visit(tile, texels) for the tiles of NormalMap::tile_size that the box around a triangle's UVs
