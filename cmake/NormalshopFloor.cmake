@@ -33,6 +33,36 @@ function(normalshop_join target)
   endforeach()
 endfunction()
 
+# normalshop_floors_first(TARGET): of an inline function that several sources compile, the linker takes the
+# first that it meets: with sanitizers let that be an optimised one, from as low a floor as there is.
+function(normalshop_floors_first target)
+  if(NOT NORMALSHOP_SANITIZE)
+    return()
+  endif()
+  normalshop_floors_under(${target} floors)
+  list(TRANSFORM floors REPLACE "(.+)" "$<TARGET_FILE:\\1>")
+  target_link_options(${target} PRIVATE "LINKER:--whole-archive" ${floors} "LINKER:--no-whole-archive")
+endfunction()
+
+# normalshop_floors_under(TARGET RESULT): our static libraries that a target links, lower floors first.
+function(normalshop_floors_under target result)
+  set(found)
+  get_target_property(libraries ${target} LINK_LIBRARIES)
+  foreach(library ${libraries})
+    string(REPLACE "normalshop::" "normalshop_" library "${library}")
+    if(NOT TARGET ${library} OR NOT library MATCHES "^normalshop_")
+      continue()
+    endif()
+    get_target_property(type ${library} TYPE)
+    if(type STREQUAL STATIC_LIBRARY)
+      normalshop_floors_under(${library} under)
+      list(APPEND found ${under} ${library})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES found)
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
 # normalshop_test(NAME SOURCES ... LIBRARIES ... [LOOPS ...] [SUITES]): one GoogleTest program for a folder
 # of tests. LOOPS are those of the sources whose own loops would take minutes under sanitizers without
 # optimisation. SUITES: the program takes long to start, so ctest starts it once a suite instead of
@@ -44,6 +74,7 @@ function(normalshop_test name)
   target_compile_definitions(test_${name} PRIVATE NORMALSHOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main normalshop::test_compiler)
   normalshop_precompiled(test_${name} test)
+  normalshop_floors_first(test_${name})
   if(NORMALSHOP_SANITIZE AND TEST_LOOPS)
     set_source_files_properties(${TEST_LOOPS} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
   endif()
