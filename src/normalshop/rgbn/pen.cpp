@@ -127,7 +127,7 @@ Rect pen(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Stro
          const PenOptions& options) {
   const PolylineField field = make_field(strokes, options);
   region = intersect(region, details.rect());
-  field.render(region, grid(options), [&](int x, int y, const std::vector<FieldSample>& row) {
+  field.render(region, grid(options), [&](int x, int y, std::span<const FieldSample> row) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       details.row(y)[x + static_cast<int>(i)] = row[i].slope;
       if (!coverage.empty()) coverage.row(y)[x + static_cast<int>(i)] = row[i].coverage;
@@ -140,7 +140,7 @@ Rect pen_height(MaskSpan height, Rect region, std::span<const Stroke> strokes,
                 const PenOptions& options) {
   const PolylineField field = make_field(strokes, options);
   region = intersect(region, height.rect());
-  field.render(region, grid(options), [&](int x, int y, const std::vector<FieldSample>& row) {
+  field.render(region, grid(options), [&](int x, int y, std::span<const FieldSample> row) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       height.row(y)[x + static_cast<int>(i)] = row[i].height;
     }

@@ -37,7 +37,7 @@ void PolylineField::add(const FieldShape& source) {
   float bottom = -std::numeric_limits<float>::infinity();
   shape.top = std::numeric_limits<float>::infinity();
   for (std::size_t i = first; i < segments_.size(); ++i) {
-    const Segment& s = segments_[i];
+    const LineSegment& s = segments_[i];
     const float end_width = s.half_width + s.length * s.half_width_rate;
     shape.largest_half_width = std::max({shape.largest_half_width, s.half_width, end_width});
     shape.top = std::min({shape.top, s.a.y(), s.b.y()});
@@ -84,7 +84,7 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
   for (std::size_t i = 0; i < count; ++i) {
     const FieldVertex& a = v[i];
     const FieldVertex& b = v[(i + 1) % v.size()];
-    Segment s{};
+    LineSegment s{};
     s.a = a.position;
     s.b = b.position;
     s.length = (b.position - a.position).norm();
@@ -108,8 +108,8 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     segments_.push_back(s);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    Segment& s = segments_[first + i];
-    Segment& next = segments_[first + (i + 1) % count];
+    LineSegment& s = segments_[first + i];
+    LineSegment& next = segments_[first + (i + 1) % count];
     s.end_cap = !ring && i + 1 == count;
     s.next = s.end_cap
                  ? 0
@@ -121,16 +121,17 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     // At a hairpin there is no mean direction: both keep their own.
     if (mean.norm() > 0.1F) s.end_tangent = next.start_tangent = mean.normalized();
   }
-  const auto constant = [](const Segment& s) {
+  const auto constant = [](const LineSegment& s) {
     return s.half_width_rate == 0.0F && s.fade_rate == 0.0F;
   };
   for (std::size_t i = first; i < segments_.size(); ++i) {
-    Segment& s = segments_[i];
+    LineSegment& s = segments_[i];
     s.even = constant(s) && constant(*(&s + s.previous)) && constant(*(&s + s.next));
+    columns_.append(s);
   }
 }
 
-void PolylineField::grow_bounds(const Segment& s, float half_width) {
+void PolylineField::grow_bounds(const LineSegment& s, float half_width) {
   const float margin = half_width + 1.0F;
   constexpr int limit = 1 << 24;
   const Vec2f low = s.a.cwiseMin(s.b).array() - margin;
@@ -150,7 +151,7 @@ PolylineField::Bins PolylineField::bin(const Rect& region) const {
   constexpr float size = tile_size;
   const float radius = 0.5F * size * std::sqrt(2.0F);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
-    const Segment& s = segments_[i];
+    const LineSegment& s = segments_[i];
     const float width = shapes_[s.shape].largest_half_width + 1.0F;
     const Vec2f low = (s.a.cwiseMin(s.b).array() - width - origin.array()) / size;
     const Vec2f high = (s.a.cwiseMax(s.b).array() + width - origin.array()) / size;

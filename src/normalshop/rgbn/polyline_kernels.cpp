@@ -1,68 +1,204 @@
 #include "normalshop/rgbn/detail/polyline_kernels.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normalshop/rgbn/polyline_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// The operations of PolylineField::beside() in its order: all targets give its bits.
 HWY_BEFORE_NAMESPACE();
 namespace normalshop::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void PlainPlacesOf(const std::vector<PlainSegment>& segments, float half_width, float x, float y,
-                   PlainPlaces& out) {
-  const hn::CappedTag<float, PlainPlaces::count> d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  const auto zero = hn::Zero(d);
-  const auto one = hn::Set(d, 1.0F);
-  const auto py = hn::Set(d, y);
-  for (int i = 0; i < PlainPlaces::count; i += lanes) {
-    const auto px = hn::Iota(d, x + static_cast<float>(i));
-    auto best = hn::Set(d, 1e30F);
-    auto offset_x = zero;
-    auto offset_y = zero;
-    auto tangent_x = zero;
-    auto tangent_y = zero;
-    auto joint = hn::Lt(one, zero);
-    for (const PlainSegment& s : segments) {
-      const auto dx = hn::Set(d, s.dx);
-      const auto dy = hn::Set(d, s.dy);
-      const auto length = hn::Set(d, s.length);
-      const auto from_x = hn::Sub(px, hn::Set(d, s.ax));
-      const auto from_y = hn::Sub(py, hn::Set(d, s.ay));
-      const auto reached = hn::Add(hn::Mul(from_x, dx), hn::Mul(from_y, dy));
-      const auto along = hn::Min(hn::Max(reached, zero), length);
-      const auto ox = hn::Sub(from_x, hn::Mul(along, dx));
-      const auto oy = hn::Sub(from_y, hn::Mul(along, dy));
-      const auto squared = hn::Add(hn::Mul(ox, ox), hn::Mul(oy, oy));
-      const auto nearer = hn::Lt(squared, best);
-      const auto at_start = hn::Le(along, zero);
-      const auto at_end = hn::Ge(along, length);
-      const auto tx = hn::IfThenElse(at_start, hn::Set(d, s.start_x),
-                                     hn::IfThenElse(at_end, hn::Set(d, s.end_x), dx));
-      const auto ty = hn::IfThenElse(at_start, hn::Set(d, s.start_y),
-                                     hn::IfThenElse(at_end, hn::Set(d, s.end_y), dy));
-      best = hn::IfThenElse(nearer, squared, best);
-      offset_x = hn::IfThenElse(nearer, ox, offset_x);
-      offset_y = hn::IfThenElse(nearer, oy, offset_y);
-      tangent_x = hn::IfThenElse(nearer, tx, tangent_x);
-      tangent_y = hn::IfThenElse(nearer, ty, tangent_y);
-      joint = hn::Or(hn::And(nearer, hn::Or(at_start, at_end)), hn::AndNot(nearer, joint));
-    }
-    const auto distance = hn::Sqrt(best);
-    const auto left_y = hn::Neg(tangent_x);
-    const auto across = hn::Add(hn::Mul(offset_x, tangent_y), hn::Mul(offset_y, left_y));
-    const auto side = hn::IfThenElse(hn::Lt(across, zero), hn::Neg(one), one);
-    const auto apart = hn::And(joint, hn::Gt(distance, zero));
-    const auto divisor = hn::IfThenElse(apart, distance, one);
-    const auto width = hn::Set(d, half_width);
-    const auto u = hn::Div(hn::Mul(side, distance), width);
-    hn::StoreU(hn::IfThenElse(hn::Lt(distance, width), u, hn::Set(d, 2.0F)), d, out.u.data() + i);
-    hn::StoreU(hn::IfThenElse(apart, hn::Mul(side, hn::Div(offset_x, divisor)), tangent_y), d,
-               out.x.data() + i);
-    hn::StoreU(hn::IfThenElse(apart, hn::Mul(side, hn::Div(offset_y, divisor)), left_y), d,
-               out.y.data() + i);
+using Tag = hn::CappedTag<float, line_lanes>;
+using IndexTag = hn::RebindToSigned<Tag>;
+using V = hn::Vec<Tag>;
+using Index = hn::Vec<IndexTag>;
+using M = hn::Mask<Tag>;
+
+constexpr Tag d;
+constexpr IndexTag di;
+
+inline V Dot(V ax, V ay, V bx, V by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); }
+
+inline V Clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
+
+inline V Gather(const std::vector<float>& column, Index at) {
+  return hn::GatherIndex(d, column.data(), at);
+}
+
+inline Index Gather(const std::vector<std::int32_t>& column, Index at) {
+  return hn::GatherIndex(di, column.data(), at);
+}
+
+inline M IsSet(Index flags) { return hn::RebindMask(d, hn::Lt(flags, hn::Zero(di))); }
+
+struct Nearest {
+  Index segment;
+  V along, x, y, squared;
+};
+
+inline Nearest NearestOf(const SegmentColumns& s, std::span<const std::uint32_t> list, V px, V py) {
+  const V zero = hn::Zero(d);
+  Nearest best{hn::Set(di, static_cast<std::int32_t>(list.front())), zero, zero, zero,
+               hn::Set(d, 1e30F)};
+  for (const std::uint32_t i : list) {
+    const V dx = hn::Set(d, s.dx[i]);
+    const V dy = hn::Set(d, s.dy[i]);
+    const V from_x = hn::Sub(px, hn::Set(d, s.ax[i]));
+    const V from_y = hn::Sub(py, hn::Set(d, s.ay[i]));
+    const V along = Clamp(Dot(from_x, from_y, dx, dy), zero, hn::Set(d, s.length[i]));
+    const V x = hn::Sub(from_x, hn::Mul(along, dx));
+    const V y = hn::Sub(from_y, hn::Mul(along, dy));
+    const V squared = Dot(x, y, x, y);
+    const M nearer = hn::Lt(squared, best.squared);
+    best.segment = hn::IfThenElse(hn::RebindMask(di, nearer),
+                                  hn::Set(di, static_cast<std::int32_t>(i)), best.segment);
+    best.along = hn::IfThenElse(nearer, along, best.along);
+    best.x = hn::IfThenElse(nearer, x, best.x);
+    best.y = hn::IfThenElse(nearer, y, best.y);
+    best.squared = hn::IfThenElse(nearer, squared, best.squared);
+  }
+  return best;
+}
+
+struct Along {
+  Index segment;
+  V at, x, y;
+};
+
+/// Newton's method for the place whose direction is square to the way to the point.
+inline Along AlongOf(const SegmentColumns& s, const Nearest& near, M at_start, M at_end, V px,
+                     V py) {
+  const V zero = hn::Zero(d);
+  const V end_side =
+      Dot(near.x, near.y, Gather(s.end_x, near.segment), Gather(s.end_y, near.segment));
+  const V start_side =
+      Dot(near.x, near.y, Gather(s.start_x, near.segment), Gather(s.start_y, near.segment));
+  const M after = hn::And(at_end, hn::Gt(end_side, zero));
+  const M before = hn::And(at_start, hn::Lt(start_side, zero));
+  Index segment = near.segment;
+  segment =
+      hn::Add(segment, hn::IfThenElseZero(hn::RebindMask(di, after), Gather(s.next, near.segment)));
+  segment = hn::Add(
+      segment, hn::IfThenElseZero(hn::RebindMask(di, before), Gather(s.previous, near.segment)));
+  const V from_x = hn::Sub(px, Gather(s.ax, segment));
+  const V from_y = hn::Sub(py, Gather(s.ay, segment));
+  const V dx = Gather(s.dx, segment);
+  const V dy = Gather(s.dy, segment);
+  const V length = Gather(s.length, segment);
+  const V start_x = Gather(s.start_x, segment);
+  const V start_y = Gather(s.start_y, segment);
+  const V divisor = hn::Max(length, hn::Set(d, 1e-6F));
+  const V turn_x = hn::Div(hn::Sub(Gather(s.end_x, segment), start_x), divisor);
+  const V turn_y = hn::Div(hn::Sub(Gather(s.end_y, segment), start_y), divisor);
+  const V linear = hn::Sub(Dot(from_x, from_y, turn_x, turn_y), Dot(dx, dy, start_x, start_y));
+  const V square = hn::Neg(Dot(dx, dy, turn_x, turn_y));
+  const V constant = Dot(from_x, from_y, start_x, start_y);
+  V at = Clamp(Dot(from_x, from_y, dx, dy), zero, length);
+  V slope = linear;
+  for (int i = 0; i < 4; ++i) {
+    slope = hn::Add(linear, hn::Mul(hn::Mul(hn::Set(d, 2.0F), at), square));
+    slope = hn::Min(slope, hn::Set(d, -0.2F));  // the centre of the bend is singular
+    const V value = hn::Add(constant, hn::Mul(at, hn::Add(linear, hn::Mul(at, square))));
+    at = Clamp(hn::Sub(at, hn::Div(value, slope)), zero, length);
+  }
+  const V down = hn::Neg(slope);
+  return {segment, at, hn::Div(hn::Add(start_x, hn::Mul(at, turn_x)), down),
+          hn::Div(hn::Add(start_y, hn::Mul(at, turn_y)), down)};
+}
+
+inline void PlacesOf(const SegmentColumns& s, std::span<const std::uint32_t> list,
+                     float largest_half_width, bool even, const LinePoints& points, int i,
+                     LinePlaces& out) {
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0F);
+  const V px = hn::LoadU(d, points.x.data() + i);
+  const V py = hn::LoadU(d, points.y.data() + i);
+  const Nearest near = NearestOf(s, list, px, py);
+  const V distance = hn::Sqrt(near.squared);
+  const V length = Gather(s.length, near.segment);
+  const M at_start = hn::Le(near.along, zero);
+  const M at_end = hn::Ge(near.along, length);
+  const M cap = hn::Or(hn::And(at_start, IsSet(Gather(s.start_cap, near.segment))),
+                       hn::And(at_end, IsSet(Gather(s.end_cap, near.segment))));
+
+  Along v{near.segment, zero, zero, zero};
+  if (!even) v = AlongOf(s, near, at_start, at_end, px, py);
+  const Index segment = hn::IfThenElse(hn::RebindMask(di, cap), near.segment, v.segment);
+  const V at = hn::IfThenElse(cap, near.along, v.at);
+  const V half_width =
+      hn::Add(Gather(s.half_width, segment), hn::Mul(at, Gather(s.half_width_rate, segment)));
+  const M inside = hn::And(
+      hn::And(hn::Lt(distance, hn::Set(d, largest_half_width)), hn::Lt(distance, half_width)),
+      hn::Ge(half_width, hn::Set(d, 1e-6F)));
+
+  const V tangent_x = hn::IfThenElse(
+      at_start, Gather(s.start_x, near.segment),
+      hn::IfThenElse(at_end, Gather(s.end_x, near.segment), Gather(s.dx, near.segment)));
+  const V tangent_y = hn::IfThenElse(
+      at_start, Gather(s.start_y, near.segment),
+      hn::IfThenElse(at_end, Gather(s.end_y, near.segment), Gather(s.dy, near.segment)));
+  // Left as seen, although y runs down.
+  const V left_y = hn::Neg(tangent_x);
+  const V side =
+      hn::IfThenElse(hn::Lt(Dot(near.x, near.y, tangent_y, left_y), zero), hn::Neg(one), one);
+  const M joint = hn::And(hn::Or(at_start, at_end), hn::Gt(distance, zero));
+  const V divisor = hn::IfThenElse(joint, distance, one);
+  const V away_x = hn::IfThenElse(joint, hn::Div(near.x, divisor), hn::Mul(side, tangent_y));
+  const V away_y = hn::IfThenElse(joint, hn::Div(near.y, divisor), hn::Mul(side, left_y));
+
+  const Index kind = hn::IfThenElse(hn::RebindMask(di, cap),
+                                    hn::Set(di, static_cast<std::int32_t>(LinePlace::Cap)),
+                                    hn::Set(di, static_cast<std::int32_t>(LinePlace::Beside)));
+  LineLanes<std::int32_t> kinds;
+  hn::StoreU(hn::IfThenElseZero(hn::RebindMask(di, inside), kind), di, kinds.data());
+  for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+    out.place[static_cast<std::size_t>(i) + k] = static_cast<LinePlace>(kinds[k]);
+  }
+  hn::StoreU(segment, di, out.segment.data() + i);
+  hn::StoreU(at, d, out.at.data() + i);
+  hn::StoreU(half_width, d, out.half_width.data() + i);
+  hn::StoreU(distance, d, out.distance.data() + i);
+  hn::StoreU(hn::IfThenElse(cap, near.x, away_x), d, out.x.data() + i);
+  hn::StoreU(hn::IfThenElse(cap, near.y, away_y), d, out.y.data() + i);
+  hn::StoreU(side, d, out.side.data() + i);
+  hn::StoreU(v.x, d, out.along_x.data() + i);
+  hn::StoreU(v.y, d, out.along_y.data() + i);
+}
+
+void LinePlacesOf(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                  float largest_half_width, bool even, const LinePoints& points, LinePlaces& out) {
+  for (int i = 0; i < line_lanes; i += static_cast<int>(hn::Lanes(d))) {
+    PlacesOf(segments, list, largest_half_width, even, points, i, out);
+  }
+}
+
+inline void OffsetsOf(const SegmentColumns& s, Index list, V px, V py, std::size_t i,
+                      SegmentOffsets& out) {
+  const V dx = Gather(s.dx, list);
+  const V dy = Gather(s.dy, list);
+  const V from_x = hn::Sub(px, Gather(s.ax, list));
+  const V from_y = hn::Sub(py, Gather(s.ay, list));
+  const V along = Clamp(Dot(from_x, from_y, dx, dy), hn::Zero(d), Gather(s.length, list));
+  const V x = hn::Sub(from_x, hn::Mul(along, dx));
+  const V y = hn::Sub(from_y, hn::Mul(along, dy));
+  hn::StoreU(x, d, out.x.data() + i);
+  hn::StoreU(y, d, out.y.data() + i);
+  hn::StoreU(Dot(x, y, x, y), d, out.squared.data() + i);
+}
+
+void SegmentOffsetsOf(const SegmentColumns& segments, std::span<const std::uint32_t> list, float x,
+                      float y, SegmentOffsets& out) {
+  const std::size_t lanes = hn::Lanes(d);
+  const V px = hn::Set(d, x);
+  const V py = hn::Set(d, y);
+  LineLanes<std::int32_t> indices{};
+  for (std::size_t i = 0; i < list.size(); i += lanes) {
+    const std::size_t count = std::min(lanes, list.size() - i);
+    for (std::size_t k = 0; k < count; ++k) indices[k] = static_cast<std::int32_t>(list[i + k]);
+    OffsetsOf(segments, hn::LoadU(di, indices.data()), px, py, i, out);
   }
 }
 
@@ -72,11 +208,40 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace normalshop {
 
-HWY_EXPORT(PlainPlacesOf);
+HWY_EXPORT(LinePlacesOf);
+HWY_EXPORT(SegmentOffsetsOf);
 
-void plain_places(const std::vector<PlainSegment>& segments, float half_width, float x, float y,
-                  PlainPlaces& out) {
-  HWY_DYNAMIC_DISPATCH(PlainPlacesOf)(segments, half_width, x, y, out);
+void SegmentColumns::append(const LineSegment& s) {
+  const auto flag = [](bool set) { return set ? -1 : 0; };
+  ax.push_back(s.a.x());
+  ay.push_back(s.a.y());
+  dx.push_back(s.direction.x());
+  dy.push_back(s.direction.y());
+  length.push_back(s.length);
+  start_x.push_back(s.start_tangent.x());
+  start_y.push_back(s.start_tangent.y());
+  end_x.push_back(s.end_tangent.x());
+  end_y.push_back(s.end_tangent.y());
+  half_width.push_back(s.half_width);
+  half_width_rate.push_back(s.half_width_rate);
+  start_cap.push_back(flag(s.start_cap));
+  end_cap.push_back(flag(s.end_cap));
+  previous.push_back(static_cast<std::int32_t>(s.previous));
+  next.push_back(static_cast<std::int32_t>(s.next));
+}
+
+void line_places(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                 float largest_half_width, bool even, const LinePoints& points, LinePlaces& out) {
+  HWY_DYNAMIC_DISPATCH(LinePlacesOf)(segments, list, largest_half_width, even, points, out);
+}
+
+void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                     const Vec2f& point, SegmentOffsets& out) {
+  const std::size_t padded = list.size() + line_lanes;
+  if (out.squared.size() < padded) {
+    for (std::vector<float>* column : {&out.x, &out.y, &out.squared}) column->resize(padded);
+  }
+  HWY_DYNAMIC_DISPATCH(SegmentOffsetsOf)(segments, list, point.x(), point.y(), out);
 }
 
 }  // namespace normalshop

@@ -124,7 +124,7 @@ Rect trim(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Str
   const Pattern laid(pattern, options);
   const PolylineField field(shapes_of(strokes, options), std::cref(laid));
   region = intersect(region, details.rect());
-  field.render(region, laid.grid(), [&](int x, int y, const std::vector<FieldSample>& row) {
+  field.render(region, laid.grid(), [&](int x, int y, std::span<const FieldSample> row) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       details.row(y)[x + static_cast<int>(i)] = row[i].slope;
       if (!coverage.empty()) coverage.row(y)[x + static_cast<int>(i)] = row[i].coverage;

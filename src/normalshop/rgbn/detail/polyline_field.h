@@ -62,7 +62,7 @@ class PolylineField {
   const Rect& bounds() const { return bounds_; }
 
   /// Samples of the pixels (x, y), (x + 1, y) ... of a part of one row.
-  using Write = std::function<void(int x, int y, const std::vector<FieldSample>&)>;
+  using Write = std::function<void(int x, int y, std::span<const FieldSample>)>;
   /// Hands over every pixel of `region` once, in parallel. `grid` x `grid` positions a pixel are
   /// averaged.
   void render(const Rect& region, int grid, const Write& write) const;
@@ -71,26 +71,8 @@ class PolylineField {
   static constexpr int tile_size = 64;
   /// Rows that share a list of the segments that may cross them.
   static constexpr float band_rows = 8.0F;
-  struct Nearest;
-  struct Along;
   using List = std::vector<std::uint32_t>;
-
-  struct Segment {
-    Vec2f a, b;
-    Vec2f direction;
-    float length;
-    float start;  ///< arc length of a
-    float rate;   ///< of arc length along the segment
-    float half_width, half_width_rate;
-    float fade, fade_rate;
-    Vec2f start_tangent, end_tangent;  ///< mean direction at the joints
-    bool start_cap = false;
-    bool end_cap = false;
-    bool even = false;  ///< neither width nor fade changes along this and its neighbours
-    std::uint32_t shape = 0;
-    std::ptrdiff_t previous = 0;  ///< from this to its neighbours in the list of segments
-    std::ptrdiff_t next = 0;
-  };
+  using Samples = LineLanes<FieldSample>;
 
   struct Shape {
     bool closed = false;
@@ -110,35 +92,38 @@ class PolylineField {
   /// What matters in a few pixels by a few.
   struct Cell {
     List segments;
-    std::vector<PlainSegment> plain;  ///< the same, where one even line without ends is all
+    bool even = false;  ///< all of them, and where along them doesn't matter
   };
 
   void add(const FieldShape& shape);
   void add_contour(const std::vector<FieldVertex>& contour, bool closed);
   void fill_bands(Shape& shape, std::size_t first, float bottom) const;
-  void grow_bounds(const Segment& segment, float half_width);
+  void grow_bounds(const LineSegment& segment, float half_width);
   Bins bin(const Rect& region) const;
   void render_tile(const Rect& tile, const List& segments, int grid, const Write& write) const;
-  void prune(const List& segments, const Rect& cell, List& kept) const;
-  void find_plain(int grid, Cell& cell) const;
-  void plain_row(int x, int y, const Cell& cell, std::span<FieldSample> row) const;
-  FieldSample pixel(int x, int y, const List& segments, int grid) const;
-  Nearest nearest(const Vec2f& p, const List& segments, std::size_t& at) const;
-  FieldSample sample(const Vec2f& p, const List& segments) const;
-  FieldSample beside(const Vec2f& p, const Shape& shape, const Nearest& nearest) const;
-  FieldSample across(float u, const Vec2f& gradient, const Segment& segment) const;
-  FieldSample cap(const Nearest& nearest) const;
-  FieldSample patterned(const Shape& shape, float u, const Vec2f& away, const Along& along) const;
-  static Along along(const Vec2f& p, const Nearest& nearest);
+  void prune(const List& segments, const Rect& cell, SegmentOffsets& offsets, List& kept) const;
+  Samples pixels(int x, int y, const Cell& cell, int grid) const;
+  Samples sample(const LinePoints& points, const Cell& cell) const;
+  Samples levels(const LinePoints& points, const Shape& shape) const;
   FieldSample level(const Vec2f& p, const Shape& shape) const;
+  Samples beside(const LinePoints& points, const Shape& shape, std::span<const std::uint32_t> list,
+                 bool even) const;
+  void turn_in(const Vec2f& p, const Shape& shape, std::size_t k, LinePlaces& places) const;
+  FieldSample profiled(const LinePlaces& places, std::size_t k) const;
+  FieldSample patterned(const Shape& shape, const LinePlaces& places, std::size_t k) const;
+  FieldSample cap(const LinePlaces& places, std::size_t k) const;
   float coverage(float u, float fade) const;
   bool inside(const Vec2f& p, const Shape& shape) const;
+  const LineSegment& segment_of(const LinePlaces& places, std::size_t k) const {
+    return segments_[static_cast<std::size_t>(places.segment[k])];
+  }
 
   Profile profile_;
   FieldPattern pattern_;
   float height_;
   FieldCoverage coverage_;
-  std::vector<Segment> segments_;
+  std::vector<LineSegment> segments_;
+  SegmentColumns columns_;  // of the same
   std::vector<Shape> shapes_;
   Rect bounds_;
 };

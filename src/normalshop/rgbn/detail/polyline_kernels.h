@@ -1,31 +1,57 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
-/// The inner loop of fields around polylines. Private to this floor.
+#include "normalshop/rgbn/detail/polyline_segment.h"
+
+/// The inner loops of fields around polylines, eight pixels at a time. Private to this floor.
+/// Positions are in pixels, y down.
 namespace normalshop {
 
-/// What places beside a segment take from it; tangents are those at its joints. In pixels, y down.
-struct PlainSegment {
-  float ax, ay;
-  float dx, dy;
-  float length;
-  float start_x, start_y;
-  float end_x, end_y;
+/// A value of each of eight points.
+inline constexpr int line_lanes = 8;
+template <class T>
+using LineLanes = std::array<T, line_lanes>;
+
+struct LinePoints {
+  LineLanes<float> x;
+  LineLanes<float> y;
 };
 
-/// Of 8 pixels in a row: the signed distance to the nearest segment / half width (positive to the
-/// left; 2 from the half width on), and its gradient.
-struct PlainPlaces {
-  static constexpr int count = 8;
-  alignas(32) std::array<float, count> u;
-  alignas(32) std::array<float, count> x;
-  alignas(32) std::array<float, count> y;
+enum class LinePlace : std::int32_t { Beyond, Beside, Cap };
+
+/// Where points lie beside a line.
+struct LinePlaces {
+  LineLanes<LinePlace> place;
+  LineLanes<std::int32_t> segment;  ///< that it is beside, or whose end is near
+  LineLanes<float> at;              ///< where along the segment
+  LineLanes<float> half_width;      ///< there
+  LineLanes<float> distance;        ///< from the nearest place of the line
+  LineLanes<float> x;  ///< away from the line, of length 1; at caps: from the end to the point
+  LineLanes<float> y;
+  LineLanes<float> side;     ///< 1 to the left, -1 to the right; of points beside
+  LineLanes<float> along_x;  ///< gradient of the arc length; of points beside
+  LineLanes<float> along_y;
 };
 
-/// Places of the pixels (x, y), (x + 1, y) ... beside a line without ends near them.
-void plain_places(const std::vector<PlainSegment>& segments, float half_width, float x, float y,
-                  PlainPlaces& out);
+/// Places of points beside the segments of a list, of one shape with this largest half width. Arc
+/// lengths grow with directions that turn evenly along each segment instead of at its ends: the s
+/// with (p - q(s)) . t(s) = 0. They are continuous beside a bend, where the nearest point jumps in
+/// speed. `even`: no width changes here and nobody asks for arc lengths, so these are 0.
+void line_places(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                 float largest_half_width, bool even, const LinePoints& points, LinePlaces& out);
+
+/// From the nearest places on a list's segments to a point.
+struct SegmentOffsets {
+  std::vector<float> x, y, squared;
+
+  Vec2f at(std::size_t i) const { return {x[i], y[i]}; }
+};
+
+void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                     const Vec2f& point, SegmentOffsets& out);
 
 }  // namespace normalshop

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "normalshop/core/vec.h"
+
+/// Private to this floor.
+namespace normalshop {
+
+/// A piece of a polyline, in pixels, y down.
+struct LineSegment {
+  Vec2f a, b;
+  Vec2f direction;
+  float length;
+  float start;  ///< arc length of a
+  float rate;   ///< of arc length along the segment
+  float half_width, half_width_rate;
+  float fade, fade_rate;
+  Vec2f start_tangent, end_tangent;  ///< mean direction at the joints
+  bool start_cap = false;
+  bool end_cap = false;
+  bool even = false;  ///< neither width nor fade changes along this and its neighbours
+  std::uint32_t shape = 0;
+  std::ptrdiff_t previous = 0;  ///< from this to its neighbours in the list of segments
+  std::ptrdiff_t next = 0;
+};
+
+/// What kernels take from segments, by columns.
+struct SegmentColumns {
+  std::vector<float> ax, ay, dx, dy, length;
+  std::vector<float> start_x, start_y, end_x, end_y;  ///< tangents
+  std::vector<float> half_width, half_width_rate;
+  std::vector<std::int32_t> start_cap, end_cap;  ///< -1: yes
+  std::vector<std::int32_t> previous, next;
+
+  void append(const LineSegment& segment);
+};
+
+}  // namespace normalshop
