@@ -23,7 +23,7 @@
 namespace normalshop {
 namespace {
 
-constexpr int dabs = 200;
+constexpr int dabs = 50;
 constexpr float window_texels = 2400.0F;  // of the view, at most the model's
 
 Mesh load_mesh() {

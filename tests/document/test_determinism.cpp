@@ -163,24 +163,24 @@ TEST(Determinism, InstructionSetsDoNotMatter) {
 /// 3e-5; there is none, since nothing is contracted and no sum depends on the width of vectors. An
 /// operator that changes what it does on purpose changes its hash and those that follow.
 TEST(Determinism, CodesAreThoseOfOtherMachines) {
-  const Hashes mesh{0x394ae9553318351a, 0xd656fd7351f240e2, 0x1ad83d9c50a085e0, 0x8768d4e56297cc34,
-                    0x1de59cd66a9e98e,  0x7f87dee553e9871d, 0x3c18a6527e482fc1, 0x1e289ee3d67b2671,
-                    0x8c29d1f66a24afcc, 0x564adebd5bbfd78e, 0x9016d7f786b6b8b,  0x7e2ac571d2eb456d,
-                    0x1ea31c37bbedcba6, 0x7311c3e52181f403, 0x3b6de694d77ff84f, 0xeb7cc090c3b83ad0,
-                    0xa8d091d5d26d0159, 0x4bee6a26aa9dce6f};
-  const Hashes picture{0x5e214a957a4cdca7, 0x390df36fa74eaf08, 0xe9eb466298078703,
-                       0x7cd939770ce3e6c2, 0xf669536d14a7ba31, 0x361e0f6ce33244d7,
-                       0x4e83676727da885c, 0xaaecf05083b6ea41, 0x23b92c67ca9c0993,
-                       0xbd543848a0b1a3bc, 0xca88586b208014b3, 0x864122b7533b1c27,
-                       0x3aa29f8704db26f5, 0xc4538d07c1950e6a, 0x755bc773a732049a,
-                       0x94f8dc3ba277945b, 0x95c842456e489a6f, 0x4977181db777b86};
+  const Hashes mesh{0x6b72a23404c82c92, 0xdc59ff932aab6e1b, 0x39f421a45739c34f, 0xa3fe880678651666,
+                    0x23f0e2118b4cad2e, 0x73ce555cd109a7bb, 0xa23e224f80b23ffe, 0x8bcb4ac7b7878d53,
+                    0xca1a9723db736b75, 0xf8828a0e4cbcb6b2, 0x7a48fa3bb9daef23, 0xd4cc386e137221bf,
+                    0x1aa761725a862794, 0x9c7285176bfa44f9, 0x484ad8d32fff8f8a, 0xcf777b86a52f9758,
+                    0x31c340fb0aae402,  0xfe2c013a21ade5e0};
+  const Hashes picture{0x1dc6daa8608246c6, 0x1e02136c647741b,  0x93384ef6bbdb3f3a,
+                       0xfe2f4b94d3128e6a, 0x924d9c9134e34f92, 0x68bdd4b0340ee048,
+                       0x9c833f8a5ad7c759, 0xfa3b6f74427be1ba, 0xd1c98e512cd77db,
+                       0xd70db48c9316c07,  0x102035e407aeb29d, 0x54830301e924b00f,
+                       0x690b85168f0f2f84, 0x2b2078a1370cb633, 0xf1a1ea0925b46c9c,
+                       0x4f72d16eeda30d2b, 0xfe87c300813213fd, 0x2e52213e492bf65e};
   Hashes found = edit_picture(Border::Wrap);
   found.pop_back();  // the colours, in single precision, which no file holds
   expect_same(edit_mesh(), mesh, "mesh");
   expect_same(found, picture, "picture");
   expect_same(edit_directions(),
-              {0xc295a7f0ea54011f, 0xff114145a73c0f55, 0x979b9ef930b5f82, 0x76a9c169ca4f3655,
-               0xe388fb625fe2ef9a, 0x6b1959da2cb21152},
+              {0x6e4d298b747f25c7, 0x5a8189d1ae1489b4, 0xc2c6184aee379c52, 0x8b6c86fb66753fd2,
+               0xf38efe1946196b91, 0xbe045bbdd022cd2c},
               "directions");
 }
 

@@ -104,6 +104,28 @@ TEST(LiveEdit, LongStrokesAcrossSeamsAreThoseOfApply) {
   }
 }
 
+// Many points to a piece of the curve that the pen follows.
+TEST(LiveEdit, DensePointsAreThoseOfApply) {
+  std::string points;
+  for (int i = 0; i < 40; ++i) {
+    const double t = 0.03 * i;
+    points += (i > 0 ? ", [" : "[") + std::to_string(0.4 * std::cos(t)) + ", " +
+              std::to_string(0.4 * std::sin(t) - 0.2) + "]";
+  }
+  const Edit whole =
+      edit(R"("operator": "pen", "options": {"width": 0.5, "height": 0.1}, "window": "view",
+              "view": "front", "strokes": [[)" +
+           points + "]]");
+  Document applied = document(plane_grid(2), noise_map(64, CodeType::U8));
+  Document drawn = applied;
+  applied.apply(whole);
+  const auto live = drawn.begin(without_strokes(whole));
+  draw_by_points(whole, 1, *live);
+  live->finish();
+  EXPECT_EQ(differing(drawn, applied), 0);
+  EXPECT_TRUE(map_of(drawn).has_edits());
+}
+
 TEST(LiveEdit, StrokesMayBecomeOthers) {
   Document drawn = flat_plane(128);
   Document applied = drawn;

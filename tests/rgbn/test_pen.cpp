@@ -71,6 +71,38 @@ TEST(Pen, StraightLineHasTheSlopesOfItsProfile) {
   }
 }
 
+/// A straight line through the same points as a curve would show its pieces as facets.
+TEST(Pen, SmoothCurvesHaveNoFacets) {
+  constexpr float radius = 150.0F;
+  constexpr float around = 200.0F;
+  for (const bool closed : {false, true}) {
+    PenOptions o = options_of(ProfileShape::Bump, 100.0F, 30.0F);
+    o.smooth = true;
+    o.closed = closed;
+    const Drawing d(400, 400, {circle({around, around}, radius, 36, 1.0F)}, o);
+    double worst = 0.0;
+    double most_off = 0.0;
+    for (int y = 0; y < 400; ++y) {
+      for (int x = 0; x < 400; ++x) {
+        const Vec2f away =
+            Vec2f(static_cast<float>(x), static_cast<float>(y)) - Vec2f(around, around);
+        const float u = (away.norm() - radius) / 50.0F;
+        // An open line's first and last pieces are not those of a circle.
+        const bool near_ends = away.x() > 0.0F && away.y() < 0.4F * radius;
+        if (std::abs(u) > 0.9F || (!closed && near_ends)) continue;
+        const Profile::Value bump = Profile({ProfileShape::Bump, closed, {}}).at(u);
+        const Vec2f g = 30.0F / 50.0F * bump.slope * away.normalized();
+        worst = std::max(worst, angle_degrees(normal_from_slope(d.slopes(x, y)),
+                                              normal_from_slope({g.x(), -g.y()})));
+        most_off = std::max(most_off,
+                            static_cast<double>(std::abs(d.heights(x, y) - 30.0F * bump.height)));
+      }
+    }
+    EXPECT_LT(worst, 0.05) << closed;
+    EXPECT_LT(most_off, 0.03) << closed;
+  }
+}
+
 TEST(Pen, YIsUp) {
   // A bump along the x axis: above it (smaller row) the surface falls upwards.
   const Drawing d(40, 40, {{{{0.0F, 20.0F}}, {{40.0F, 20.0F}}}},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,10 @@ enum class StrokeEnds;
 Extent smooth_extent_of(const std::vector<UnitStroke>& strokes, float margin, StrokeEnds ends);
 
 /// Of strokes that have become others, as they were and as they are, what lies beyond the points
-/// that both have in common, and a little before that: where the smooth curves differ.
+/// that both have in common, and a little before that: where the smooth curves differ, and what
+/// lies `back` object units before them.
 std::vector<UnitStroke> changed_parts(const std::vector<UnitStroke>& before,
-                                      const std::vector<UnitStroke>& after);
+                                      const std::vector<UnitStroke>& after, float back);
 
 /// What an operator sees of an editing chart: pixels, and two numbers in each.
 struct OperatorInput {
@@ -102,8 +104,9 @@ class EditOperator {
   virtual std::string_view asset_field() const { return {}; }
   /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
-  /// Does it make the same of a stroke wherever that goes on to, but for its extent()?
-  virtual bool follows_strokes() const { return false; }
+  /// Where a stroke goes on to others, does it make the same of what lies so many object units
+  /// before that, outside of the extent() of the rest? Infinite where it may change anywhere.
+  virtual float looks_back() const { return std::numeric_limits<float>::infinity(); }
   /// Object units read beyond the extent, in a chart whose pixels are that long.
   virtual float reach(float /*pixel*/) const { return 0.0F; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.

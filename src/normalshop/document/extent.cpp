@@ -30,6 +30,15 @@ bool same(const UnitPoint& a, const UnitPoint& b) {
   return a.position == b.position && a.pressure == b.pressure;
 }
 
+/// The point so far before another.
+std::size_t point_before(const UnitStroke& stroke, std::size_t at, float back) {
+  while (at > 0 && back > 0.0F) {
+    back -= (stroke[at].position - stroke[at - 1].position).norm();
+    --at;
+  }
+  return at;
+}
+
 void add_tail(const UnitStroke& stroke, std::size_t first, std::vector<UnitStroke>& parts) {
   if (first >= stroke.size()) return;
   parts.emplace_back(stroke.begin() + static_cast<std::ptrdiff_t>(first), stroke.end());
@@ -38,7 +47,7 @@ void add_tail(const UnitStroke& stroke, std::size_t first, std::vector<UnitStrok
 }  // namespace
 
 std::vector<UnitStroke> changed_parts(const std::vector<UnitStroke>& before,
-                                      const std::vector<UnitStroke>& after) {
+                                      const std::vector<UnitStroke>& after, float back) {
   const UnitStroke none;
   std::vector<UnitStroke> parts;
   for (std::size_t i = 0; i < std::max(before.size(), after.size()); ++i) {
@@ -47,7 +56,8 @@ std::vector<UnitStroke> changed_parts(const std::vector<UnitStroke>& before,
     const auto [at, end] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
     if (at == a.end() && end == b.end()) continue;
     const auto common = static_cast<std::size_t>(at - a.begin());
-    const std::size_t first = common > points_before ? common - points_before : 0;
+    const std::size_t shaped = common > points_before ? common - points_before : 0;
+    const std::size_t first = shaped > 0 ? point_before(a, shaped, back) : 0;
     add_tail(a, first, parts);
     add_tail(b, first, parts);
   }

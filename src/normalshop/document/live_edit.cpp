@@ -1,6 +1,7 @@
 #include "normalshop/document/live_edit.h"
 
 #include <cassert>
+#include <cmath>
 
 #include "normalshop/chart/push_colors.h"
 #include "normalshop/core/error.h"
@@ -77,9 +78,10 @@ const ChartGrid& LiveEdit::grid() const {
 Rect LiveEdit::changed_region(const std::vector<UnitStroke>& before) const {
   const EditOperator& operation = *state_->edit.operation;
   const std::vector<UnitStroke>& after = state_->edit.strokes;
-  std::vector<UnitStroke> parts = changed_parts(before, after);
+  const float back = operation.looks_back();
+  std::vector<UnitStroke> parts = changed_parts(before, after, back);
   if (parts.empty()) return {};
-  if (!operation.follows_strokes()) {
+  if (std::isinf(back)) {
     parts = before;
     parts.insert(parts.end(), after.begin(), after.end());
   }

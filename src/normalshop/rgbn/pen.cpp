@@ -83,7 +83,7 @@ std::vector<FieldVertex> vertices(const Stroke& stroke, const PenOptions& o, con
     const float p = std::clamp(pressure, 0.0F, 1.0F);
     const float t = taper_at(v, length, taper);
     out.push_back({position, 0.5F * o.width * t * (fades.width ? p : 1.0F) * across,
-                   t * t * (fades.height ? p : 1.0F)});
+                   t * t * (fades.height ? p : 1.0F), -1.0F, o.smooth});
   };
   push(stroke.front().position, stroke.front().pressure, stroke.front().across, along.front());
   for (std::size_t i = 1; i < stroke.size(); ++i) {

@@ -15,12 +15,25 @@ constexpr int cell_size = line_lanes;
 constexpr int block_size = 32;
 /// Nearer to the line than this, its own orientation says where inside is.
 constexpr float touching = 1e-3F;
+constexpr float touching_bent = 0.5F;  // inside is told by straight lines
 /// Slope jumps are spread over this many pixels on each side, but not over more of the profile.
 constexpr float jump_radius = 1.5F;
 constexpr float largest_jump_share = 0.25F;
 
 float jump_share(float half_width) {
   return std::min(jump_radius / half_width, largest_jump_share);
+}
+
+struct Circle {
+  Vec2f center;
+  float radius;
+};
+
+/// Around the pixels of a square, and half a pixel more.
+Circle circle_around(const Rect& square) {
+  return {Vec2f(0.5F * static_cast<float>(square.x0 + square.x1 - 1),
+                0.5F * static_cast<float>(square.y0 + square.y1 - 1)),
+          0.5F * static_cast<float>(square.width()) * std::sqrt(2.0F) + 0.5F};
 }
 
 /// Left as seen, although y runs down.
@@ -30,23 +43,27 @@ Vec2f left_of(const Vec2f& direction) { return {direction.y(), -direction.x()}; 
 
 void PolylineField::render(const Rect& region, int grid, const Write& write) const {
   if (region.empty()) return;
-  const Bins bins = bin(region);
-  parallel_for(bins.tiles.size(), 1, [&](std::size_t a, std::size_t b) {
+  const int columns = (region.width() + tile_size - 1) / tile_size;
+  const int rows = (region.height() + tile_size - 1) / tile_size;
+  const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  parallel_for(tiles, 1, [&](std::size_t a, std::size_t b) {
     for (std::size_t i = a; i < b; ++i) {
-      const int x = region.x0 + static_cast<int>(i) % bins.columns * tile_size;
-      const int y = region.y0 + static_cast<int>(i) / bins.columns * tile_size;
-      render_tile(intersect({x, y, x + tile_size, y + tile_size}, region), bins.tiles[i], grid,
-                  write);
+      const int x = region.x0 + static_cast<int>(i) % columns * tile_size;
+      const int y = region.y0 + static_cast<int>(i) / columns * tile_size;
+      render_tile(intersect({x, y, x + tile_size, y + tile_size}, region), grid, write);
     }
   });
 }
 
-void PolylineField::render_tile(const Rect& tile, const List& segments, int grid,
-                                const Write& write) const {
+void PolylineField::render_tile(const Rect& tile, int grid, const Write& write) const {
   std::vector<FieldSample> row(static_cast<std::size_t>(tile.width() + cell_size - 1));
   const auto hand_over = [&](int y) {
     write(tile.x0, y, std::span(row).first(static_cast<std::size_t>(tile.width())));
   };
+  SegmentOffsets offsets;
+  const Rect square_tile{tile.x0, tile.y0, tile.x0 + tile_size, tile.y0 + tile_size};
+  List segments;
+  prune(near(square_tile), square_tile, offsets, segments);
   if (segments.empty()) {
     // No line comes near: one value for the whole tile.
     const Samples all = pixels(tile.x0, tile.y0, {}, 1);
@@ -59,7 +76,6 @@ void PolylineField::render_tile(const Rect& tile, const List& segments, int grid
   };
   std::vector<List> blocks(columns(block_size));
   std::vector<Cell> cells(columns(cell_size));
-  SegmentOffsets offsets;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += cell_size) {
       const auto starts = [&](int size) {
@@ -71,14 +87,20 @@ void PolylineField::render_tile(const Rect& tile, const List& segments, int grid
       if (starts(block_size)) prune(segments, square(block_size), offsets, block);
       if (starts(cell_size)) {
         prune(block, square(cell_size), offsets, cell.segments);
-        cell.even = !pattern_ && std::all_of(cell.segments.begin(), cell.segments.end(),
-                                             [&](std::uint32_t i) { return segments_[i].even; });
+        look_at(cell);
       }
       const Samples samples = pixels(x, y, cell, grid);
       std::copy(samples.begin(), samples.end(), row.begin() + (x - tile.x0));
     }
     hand_over(y);
   }
+}
+
+void PolylineField::look_at(Cell& cell) const {
+  const auto even = [&](std::uint32_t i) { return segments_[i].even; };
+  const auto bends = [&](std::uint32_t i) { return segments_[i].bends(); };
+  cell.even = !pattern_ && std::all_of(cell.segments.begin(), cell.segments.end(), even);
+  cell.bends = std::any_of(cell.segments.begin(), cell.segments.end(), bends);
 }
 
 /// Of (x, y), (x + 1, y) ...
@@ -107,15 +129,31 @@ PolylineField::Samples PolylineField::pixels(int x, int y, const Cell& cell, int
   return sum;
 }
 
+/// Those whose chunks may have the nearest segment of their shape anywhere in a square.
+PolylineField::List PolylineField::near(const Rect& square) const {
+  const auto [center, radius] = circle_around(square);
+  List list;
+  for (const Shape& shape : shapes_) {
+    const auto distance = [&, c = center](const Chunk& chunk) { return (c - chunk.center).norm(); };
+    float farthest = shape.largest_half_width + radius;
+    for (const Chunk& chunk : shape.chunks) {
+      farthest = std::min(farthest, distance(chunk) + chunk.radius + 2.0F * radius + 0.01F);
+    }
+    for (const Chunk& chunk : shape.chunks) {
+      if (distance(chunk) - chunk.radius > farthest) continue;
+      for (std::uint32_t i = chunk.first; i < chunk.end; ++i) list.push_back(i);
+    }
+  }
+  return list;
+}
+
 /// Keeps, of each shape, what can be the nearest segment anywhere in the cell. The gradient of a
 /// distance d to a segment turns by at most 1 / d a pixel: seen from afar, the difference of two
 /// distances changes little within the cell.
 void PolylineField::prune(const List& segments, const Rect& cell, SegmentOffsets& offsets,
                           List& kept) const {
   kept.clear();
-  const Vec2f center(0.5F * static_cast<float>(cell.x0 + cell.x1 - 1),
-                     0.5F * static_cast<float>(cell.y0 + cell.y1 - 1));
-  const float radius = 0.5F * static_cast<float>(cell.width()) * std::sqrt(2.0F) + 0.5F;
+  const auto [center, radius] = circle_around(cell);
   segment_offsets(columns_, segments, center, offsets);
   for (std::size_t i = 0; i < segments.size();) {
     const std::uint32_t shape = segments_[segments[i]].shape;
@@ -159,7 +197,9 @@ PolylineField::Samples PolylineField::sample(const LinePoints& points, const Cel
     if (at < segments.size() && segments_[segments[at]].shape == i) {
       const std::size_t first = at;
       while (at < segments.size() && segments_[segments[at]].shape == i) ++at;
-      take(beside(points, shapes_[i], std::span(segments).subspan(first, at - first), cell.even));
+      const auto list = std::span(segments).subspan(first, at - first);
+      take(
+          beside(points, shapes_[i], {list, shapes_[i].largest_half_width, cell.even, cell.bends}));
     } else if (has_level) {
       take(levels(points, shapes_[i]));
     } else if (at == segments.size()) {
@@ -188,9 +228,9 @@ FieldSample PolylineField::level(const Vec2f& p, const Shape& shape) const {
 }
 
 PolylineField::Samples PolylineField::beside(const LinePoints& points, const Shape& shape,
-                                             std::span<const std::uint32_t> list, bool even) const {
+                                             const LineList& list) const {
   LinePlaces places;
-  line_places(columns_, list, shape.largest_half_width, even, points, places);
+  line_places(columns_, list, points, places);
   Samples out{};
   for (std::size_t k = 0; k < out.size(); ++k) {
     const Vec2f p(points.x[k], points.y[k]);
@@ -213,9 +253,9 @@ PolylineField::Samples PolylineField::beside(const LinePoints& points, const Sha
 /// A closed shape's sides are inside and outside.
 void PolylineField::turn_in(const Vec2f& p, const Shape& shape, std::size_t k,
                             LinePlaces& places) const {
-  const bool touches = places.distance[k] < touching;
-  const float to_left = places.side[k];
-  const float side = touches ? to_left * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
+  const bool touches =
+      places.distance[k] < (segment_of(places, k).bends() ? touching_bent : touching);
+  const float side = touches ? places.side[k] * shape.orientation : inside(p, shape) ? 1.0F : -1.0F;
   places.side[k] = side;
 }
 

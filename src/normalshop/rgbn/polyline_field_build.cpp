@@ -13,6 +13,16 @@ int clamped_int(float x, int low, int high) {
       std::clamp(x, static_cast<float>(low), static_cast<float>(std::max(low, high))));
 }
 
+/// Where two pieces of a curve meet: the parabola through their ends tells its direction.
+void bend(LineSegment& s, LineSegment& next) {
+  constexpr float corner = 0.1F;
+  if (s.direction.dot(next.direction) < 0.0F) return;
+  if (std::abs(cross(s.direction, next.direction)) > corner) return;
+  const Vec2f tangent = next.length * s.direction + s.length * next.direction;
+  s.end_bend = cross(s.direction, tangent) / s.direction.dot(tangent);
+  next.start_bend = cross(next.direction, tangent) / next.direction.dot(tangent);
+}
+
 }  // namespace
 
 PolylineField::PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile,
@@ -49,6 +59,7 @@ void PolylineField::add(const FieldShape& source) {
   for (std::size_t i = first; i < segments_.size(); ++i) {
     grow_bounds(segments_[i], shape.largest_half_width);
   }
+  shape.chunks = chunks(first);
   // With y down, a positive sum means clockwise as seen: inside is to the right.
   shape.orientation = area > 0.0 ? -1.0F : 1.0F;
   if (shape.closed && first < segments_.size()) fill_bands(shape, first, bottom);
@@ -120,6 +131,7 @@ void PolylineField::add_contour(const std::vector<FieldVertex>& contour, bool cl
     const Vec2f mean = 0.5F * (s.direction + next.direction);
     // At a hairpin there is no mean direction: both keep their own.
     if (mean.norm() > 0.1F) s.end_tangent = next.start_tangent = mean.normalized();
+    if (v[i].smooth && v[(i + 1) % v.size()].smooth) bend(s, next);
   }
   const auto constant = [](const LineSegment& s) {
     return s.half_width_rate == 0.0F && s.fade_rate == 0.0F;
@@ -142,34 +154,22 @@ void PolylineField::grow_bounds(const LineSegment& s, float half_width) {
                             clamped_int(std::ceil(high.y()), -limit, limit) + 1});
 }
 
-PolylineField::Bins PolylineField::bin(const Rect& region) const {
-  Bins bins;
-  bins.columns = (region.width() + tile_size - 1) / tile_size;
-  const int rows = (region.height() + tile_size - 1) / tile_size;
-  bins.tiles.resize(static_cast<std::size_t>(bins.columns) * static_cast<std::size_t>(rows));
-  const Vec2f origin(static_cast<float>(region.x0), static_cast<float>(region.y0));
-  constexpr float size = tile_size;
-  const float radius = 0.5F * size * std::sqrt(2.0F);
-  for (std::size_t i = 0; i < segments_.size(); ++i) {
-    const LineSegment& s = segments_[i];
-    const float width = shapes_[s.shape].largest_half_width + 1.0F;
-    const Vec2f low = (s.a.cwiseMin(s.b).array() - width - origin.array()) / size;
-    const Vec2f high = (s.a.cwiseMax(s.b).array() + width - origin.array()) / size;
-    if (high.x() < 0.0F || high.y() < 0.0F) continue;
-    const int x1 = clamped_int(high.x(), 0, bins.columns - 1);
-    const int y1 = clamped_int(high.y(), 0, rows - 1);
-    for (int y = clamped_int(std::floor(low.y()), 0, rows); y <= y1; ++y) {
-      for (int x = clamped_int(std::floor(low.x()), 0, bins.columns); x <= x1; ++x) {
-        const Vec2f center =
-            origin + size * Vec2f(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-        const float along = std::clamp((center - s.a).dot(s.direction), 0.0F, s.length);
-        if ((center - s.a - along * s.direction).norm() > radius + width + 1.0F) continue;
-        bins.tiles[static_cast<std::size_t>(y * bins.columns + x)].push_back(
-            static_cast<std::uint32_t>(i));
-      }
+/// Of the segments from `first` on.
+std::vector<PolylineField::Chunk> PolylineField::chunks(std::size_t first) const {
+  constexpr std::size_t size = 16;
+  std::vector<Chunk> out;
+  for (; first < segments_.size(); first += size) {
+    const std::size_t end = std::min(first + size, segments_.size());
+    Vec2f low = segments_[first].a;
+    Vec2f high = low;
+    for (std::size_t i = first; i < end; ++i) {
+      low = low.cwiseMin(segments_[i].a).cwiseMin(segments_[i].b);
+      high = high.cwiseMax(segments_[i].a).cwiseMax(segments_[i].b);
     }
+    out.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end),
+                   0.5F * (low + high), 0.5F * (high - low).norm()});
   }
-  return bins;
+  return out;
 }
 
 }  // namespace normalshop

@@ -63,14 +63,8 @@ inline Nearest NearestOf(const SegmentColumns& s, std::span<const std::uint32_t>
   return best;
 }
 
-struct Along {
-  Index segment;
-  V at, x, y;
-};
-
-/// Newton's method for the place whose direction is square to the way to the point.
-inline Along AlongOf(const SegmentColumns& s, const Nearest& near, M at_start, M at_end, V px,
-                     V py) {
+/// Behind the end of a segment or before its start, the neighbour's part of the line is near.
+inline Index BesideOf(const SegmentColumns& s, const Nearest& near, M at_start, M at_end) {
   const V zero = hn::Zero(d);
   const V end_side =
       Dot(near.x, near.y, Gather(s.end_x, near.segment), Gather(s.end_y, near.segment));
@@ -78,11 +72,18 @@ inline Along AlongOf(const SegmentColumns& s, const Nearest& near, M at_start, M
       Dot(near.x, near.y, Gather(s.start_x, near.segment), Gather(s.start_y, near.segment));
   const M after = hn::And(at_end, hn::Gt(end_side, zero));
   const M before = hn::And(at_start, hn::Lt(start_side, zero));
-  Index segment = near.segment;
-  segment =
-      hn::Add(segment, hn::IfThenElseZero(hn::RebindMask(di, after), Gather(s.next, near.segment)));
-  segment = hn::Add(
-      segment, hn::IfThenElseZero(hn::RebindMask(di, before), Gather(s.previous, near.segment)));
+  const Index next = hn::IfThenElseZero(hn::RebindMask(di, after), Gather(s.next, near.segment));
+  const Index previous =
+      hn::IfThenElseZero(hn::RebindMask(di, before), Gather(s.previous, near.segment));
+  return hn::Add(near.segment, hn::Add(next, previous));
+}
+
+struct Along {
+  V at, x, y;
+};
+
+/// Newton's method for the place whose direction is square to the way to the point.
+inline Along AlongOf(const SegmentColumns& s, Index segment, V px, V py) {
   const V from_x = hn::Sub(px, Gather(s.ax, segment));
   const V from_y = hn::Sub(py, Gather(s.ay, segment));
   const V dx = Gather(s.dx, segment);
@@ -96,59 +97,135 @@ inline Along AlongOf(const SegmentColumns& s, const Nearest& near, M at_start, M
   const V linear = hn::Sub(Dot(from_x, from_y, turn_x, turn_y), Dot(dx, dy, start_x, start_y));
   const V square = hn::Neg(Dot(dx, dy, turn_x, turn_y));
   const V constant = Dot(from_x, from_y, start_x, start_y);
-  V at = Clamp(Dot(from_x, from_y, dx, dy), zero, length);
+  V at = Clamp(Dot(from_x, from_y, dx, dy), hn::Zero(d), length);
   V slope = linear;
   for (int i = 0; i < 4; ++i) {
     slope = hn::Add(linear, hn::Mul(hn::Mul(hn::Set(d, 2.0F), at), square));
     slope = hn::Min(slope, hn::Set(d, -0.2F));  // the centre of the bend is singular
     const V value = hn::Add(constant, hn::Mul(at, hn::Add(linear, hn::Mul(at, square))));
-    at = Clamp(hn::Sub(at, hn::Div(value, slope)), zero, length);
+    at = Clamp(hn::Sub(at, hn::Div(value, slope)), hn::Zero(d), length);
   }
   const V down = hn::Neg(slope);
-  return {segment, at, hn::Div(hn::Add(start_x, hn::Mul(at, turn_x)), down),
+  return {at, hn::Div(hn::Add(start_x, hn::Mul(at, turn_x)), down),
           hn::Div(hn::Add(start_y, hn::Mul(at, turn_y)), down)};
 }
 
-inline void PlacesOf(const SegmentColumns& s, std::span<const std::uint32_t> list,
-                     float largest_half_width, bool even, const LinePoints& points, int i,
-                     LinePlaces& out) {
+/// How a point lies to a line: the distance, and the direction away from the line.
+struct Away {
+  V distance, x, y, side;
+};
+
+/// Sides are left and right as seen, although y runs down.
+inline Away AwayOf(const SegmentColumns& s, const Nearest& near, M at_start, M at_end) {
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0F);
-  const V px = hn::LoadU(d, points.x.data() + i);
-  const V py = hn::LoadU(d, points.y.data() + i);
-  const Nearest near = NearestOf(s, list, px, py);
   const V distance = hn::Sqrt(near.squared);
-  const V length = Gather(s.length, near.segment);
-  const M at_start = hn::Le(near.along, zero);
-  const M at_end = hn::Ge(near.along, length);
-  const M cap = hn::Or(hn::And(at_start, IsSet(Gather(s.start_cap, near.segment))),
-                       hn::And(at_end, IsSet(Gather(s.end_cap, near.segment))));
-
-  Along v{near.segment, zero, zero, zero};
-  if (!even) v = AlongOf(s, near, at_start, at_end, px, py);
-  const Index segment = hn::IfThenElse(hn::RebindMask(di, cap), near.segment, v.segment);
-  const V at = hn::IfThenElse(cap, near.along, v.at);
-  const V half_width =
-      hn::Add(Gather(s.half_width, segment), hn::Mul(at, Gather(s.half_width_rate, segment)));
-  const M inside = hn::And(
-      hn::And(hn::Lt(distance, hn::Set(d, largest_half_width)), hn::Lt(distance, half_width)),
-      hn::Ge(half_width, hn::Set(d, 1e-6F)));
-
   const V tangent_x = hn::IfThenElse(
       at_start, Gather(s.start_x, near.segment),
       hn::IfThenElse(at_end, Gather(s.end_x, near.segment), Gather(s.dx, near.segment)));
   const V tangent_y = hn::IfThenElse(
       at_start, Gather(s.start_y, near.segment),
       hn::IfThenElse(at_end, Gather(s.end_y, near.segment), Gather(s.dy, near.segment)));
-  // Left as seen, although y runs down.
   const V left_y = hn::Neg(tangent_x);
   const V side =
       hn::IfThenElse(hn::Lt(Dot(near.x, near.y, tangent_y, left_y), zero), hn::Neg(one), one);
   const M joint = hn::And(hn::Or(at_start, at_end), hn::Gt(distance, zero));
   const V divisor = hn::IfThenElse(joint, distance, one);
-  const V away_x = hn::IfThenElse(joint, hn::Div(near.x, divisor), hn::Mul(side, tangent_y));
-  const V away_y = hn::IfThenElse(joint, hn::Div(near.y, divisor), hn::Mul(side, left_y));
+  return {distance, hn::IfThenElse(joint, hn::Div(near.x, divisor), hn::Mul(side, tangent_y)),
+          hn::IfThenElse(joint, hn::Div(near.y, divisor), hn::Mul(side, left_y)), side};
+}
 
+/// The same from a segment that bends: Newton's method for the foot (s, b(s)) in coordinates along
+/// the segment and across. Bends being small, it is near the foot on the straight line.
+inline Away BentAwayOf(const SegmentColumns& s, Index segment, V px, V py) {
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0F);
+  const auto times = [](float factor, V v) { return hn::Mul(hn::Set(d, factor), v); };
+  const V dx = Gather(s.dx, segment);
+  const V dy = Gather(s.dy, segment);
+  const V from_x = hn::Sub(px, Gather(s.ax, segment));
+  const V from_y = hn::Sub(py, Gather(s.ay, segment));
+  const V ahead = Dot(from_x, from_y, dx, dy);
+  const V across = hn::Sub(hn::Mul(from_y, dx), hn::Mul(from_x, dy));
+  const V length = hn::Max(Gather(s.length, segment), hn::Set(d, 1e-6F));
+  const V share = hn::Div(one, length);
+  const V start = Gather(s.start_bend, segment);
+  const V end = Gather(s.end_bend, segment);
+  // b(t L) = L (start t + square t^2 + cube t^3).
+  const V square = hn::Neg(hn::Add(times(2.0F, start), end));
+  const V cube = hn::Add(start, end);
+  // The neighbours' parts begin at an angle that is theirs only nearly.
+  const V beyond = times(0.25F, length);
+  const V low = hn::Neg(beyond);
+  const V high = hn::Add(length, beyond);
+  constexpr int steps = 2;
+  V at = Clamp(ahead, low, high);
+  V way_x = zero;
+  V way_y = zero;
+  V slope = zero;
+  for (int i = 0;; ++i) {
+    const V t = hn::Mul(at, share);
+    const V height = hn::Mul(at, hn::Add(start, hn::Mul(t, hn::Add(square, hn::Mul(t, cube)))));
+    slope = hn::Add(start, hn::Mul(t, hn::Add(times(2.0F, square), hn::Mul(t, times(3.0F, cube)))));
+    way_x = hn::Sub(ahead, at);
+    way_y = hn::Sub(across, height);
+    if (i == steps) break;
+    const V turn = hn::Mul(hn::Add(times(2.0F, square), hn::Mul(t, times(6.0F, cube))), share);
+    V rate = hn::Sub(hn::Mul(way_y, turn), hn::Add(one, hn::Mul(slope, slope)));
+    rate = hn::Min(rate, hn::Set(d, -0.2F));  // the centre of the bend is singular
+    at = Clamp(hn::Sub(at, hn::Div(hn::Add(way_x, hn::Mul(way_y, slope)), rate)), low, high);
+  }
+  const V norm = hn::Sqrt(hn::Add(one, hn::Mul(slope, slope)));
+  const V left_ahead = hn::Div(slope, norm);
+  const V left_across = hn::Neg(hn::Div(one, norm));
+  const V to_left = Dot(way_x, way_y, left_ahead, left_across);
+  const V side = hn::IfThenElse(hn::Lt(to_left, zero), hn::Neg(one), one);
+  const V left_x = hn::Sub(hn::Mul(left_ahead, dx), hn::Mul(left_across, dy));
+  const V left_y = hn::Add(hn::Mul(left_ahead, dy), hn::Mul(left_across, dx));
+  return {hn::Sqrt(Dot(way_x, way_y, way_x, way_y)), hn::Mul(side, left_x), hn::Mul(side, left_y),
+          side};
+}
+
+inline M BendsOf(const SegmentColumns& s, const LineList& list, Index segment, M cap) {
+  const V zero = hn::Zero(d);
+  if (!list.bends) return hn::Lt(zero, zero);
+  const M bends = hn::Or(hn::Ne(Gather(s.start_bend, segment), zero),
+                         hn::Ne(Gather(s.end_bend, segment), zero));
+  return hn::AndNot(cap, bends);
+}
+
+inline void PlacesOf(const SegmentColumns& s, const LineList& list, const LinePoints& points, int i,
+                     LinePlaces& out) {
+  const V zero = hn::Zero(d);
+  const V px = hn::LoadU(d, points.x.data() + i);
+  const V py = hn::LoadU(d, points.y.data() + i);
+  const Nearest near = NearestOf(s, list.segments, px, py);
+  const M at_start = hn::Le(near.along, zero);
+  const M at_end = hn::Ge(near.along, Gather(s.length, near.segment));
+  const M cap = hn::Or(hn::And(at_start, IsSet(Gather(s.start_cap, near.segment))),
+                       hn::And(at_end, IsSet(Gather(s.end_cap, near.segment))));
+  Index segment = near.segment;
+  if ((!list.even || list.bends) && !hn::AllFalse(d, hn::Or(at_start, at_end))) {
+    segment = hn::IfThenElse(hn::RebindMask(di, cap), segment, BesideOf(s, near, at_start, at_end));
+  }
+  Along v{zero, zero, zero};
+  if (!list.even) v = AlongOf(s, segment, px, py);
+  v.at = hn::IfThenElse(cap, near.along, v.at);
+  const M bends = BendsOf(s, list, segment, cap);
+  Away away;
+  if (!hn::AllTrue(d, bends)) away = AwayOf(s, near, at_start, at_end);
+  if (!hn::AllFalse(d, bends)) {
+    const Away bent = BentAwayOf(s, segment, px, py);
+    if (hn::AllTrue(d, bends)) away = bent;
+    away = {hn::IfThenElse(bends, bent.distance, away.distance),
+            hn::IfThenElse(bends, bent.x, away.x), hn::IfThenElse(bends, bent.y, away.y),
+            hn::IfThenElse(bends, bent.side, away.side)};
+  }
+  const V half_width =
+      hn::Add(Gather(s.half_width, segment), hn::Mul(v.at, Gather(s.half_width_rate, segment)));
+  const M inside = hn::And(hn::And(hn::Lt(away.distance, hn::Set(d, list.largest_half_width)),
+                                   hn::Lt(away.distance, half_width)),
+                           hn::Ge(half_width, hn::Set(d, 1e-6F)));
   const Index kind = hn::IfThenElse(hn::RebindMask(di, cap),
                                     hn::Set(di, static_cast<std::int32_t>(LinePlace::Cap)),
                                     hn::Set(di, static_cast<std::int32_t>(LinePlace::Beside)));
@@ -158,20 +235,20 @@ inline void PlacesOf(const SegmentColumns& s, std::span<const std::uint32_t> lis
     out.place[static_cast<std::size_t>(i) + k] = static_cast<LinePlace>(kinds[k]);
   }
   hn::StoreU(segment, di, out.segment.data() + i);
-  hn::StoreU(at, d, out.at.data() + i);
+  hn::StoreU(v.at, d, out.at.data() + i);
   hn::StoreU(half_width, d, out.half_width.data() + i);
-  hn::StoreU(distance, d, out.distance.data() + i);
-  hn::StoreU(hn::IfThenElse(cap, near.x, away_x), d, out.x.data() + i);
-  hn::StoreU(hn::IfThenElse(cap, near.y, away_y), d, out.y.data() + i);
-  hn::StoreU(side, d, out.side.data() + i);
+  hn::StoreU(away.distance, d, out.distance.data() + i);
+  hn::StoreU(hn::IfThenElse(cap, near.x, away.x), d, out.x.data() + i);
+  hn::StoreU(hn::IfThenElse(cap, near.y, away.y), d, out.y.data() + i);
+  hn::StoreU(away.side, d, out.side.data() + i);
   hn::StoreU(v.x, d, out.along_x.data() + i);
   hn::StoreU(v.y, d, out.along_y.data() + i);
 }
 
-void LinePlacesOf(const SegmentColumns& segments, std::span<const std::uint32_t> list,
-                  float largest_half_width, bool even, const LinePoints& points, LinePlaces& out) {
+void LinePlacesOf(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
+                  LinePlaces& out) {
   for (int i = 0; i < line_lanes; i += static_cast<int>(hn::Lanes(d))) {
-    PlacesOf(segments, list, largest_half_width, even, points, i, out);
+    PlacesOf(segments, list, points, i, out);
   }
 }
 
@@ -222,6 +299,8 @@ void SegmentColumns::append(const LineSegment& s) {
   start_y.push_back(s.start_tangent.y());
   end_x.push_back(s.end_tangent.x());
   end_y.push_back(s.end_tangent.y());
+  start_bend.push_back(s.start_bend);
+  end_bend.push_back(s.end_bend);
   half_width.push_back(s.half_width);
   half_width_rate.push_back(s.half_width_rate);
   start_cap.push_back(flag(s.start_cap));
@@ -230,9 +309,9 @@ void SegmentColumns::append(const LineSegment& s) {
   next.push_back(static_cast<std::int32_t>(s.next));
 }
 
-void line_places(const SegmentColumns& segments, std::span<const std::uint32_t> list,
-                 float largest_half_width, bool even, const LinePoints& points, LinePlaces& out) {
-  HWY_DYNAMIC_DISPATCH(LinePlacesOf)(segments, list, largest_half_width, even, points, out);
+void line_places(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
+                 LinePlaces& out) {
+  HWY_DYNAMIC_DISPATCH(LinePlacesOf)(segments, list, points, out);
 }
 
 void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,

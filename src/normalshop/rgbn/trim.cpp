@@ -53,7 +53,7 @@ std::vector<FieldShape> shapes_of(std::span<const Stroke> strokes, const TrimOpt
     for (const StrokePoint& p : line_of(stroke, o)) {
       const float pressure = o.pressure ? std::clamp(p.pressure, 0.0F, 1.0F) : 1.0F;
       shape.contours.back().push_back(
-          {p.position, 0.5F * o.width * pressure * p.across, 1.0F, p.along});
+          {p.position, 0.5F * o.width * pressure * p.across, 1.0F, p.along, o.smooth});
     }
     shapes.push_back(std::move(shape));
   }

@@ -30,7 +30,9 @@ class AreaEdit : public EditOperator {
   Value options() const override { return options_value(options_); }
   bool picks() const override { return normalshop::picks(options_.area); }
   StrokeUse stroke_use() const override { return area_stroke_use(options_); }
-  bool follows_strokes() const override { return options_.area == FilterArea::Brush; }
+  float looks_back() const override {
+    return options_.area == FilterArea::Brush ? 0.0F : EditOperator::looks_back();
+  }
   bool follows_surface() const override { return options_.area == FilterArea::Brush; }
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {

@@ -25,7 +25,11 @@ class PenOperator : public EditOperator {
   }
   bool follows_surface() const override { return !options_.closed; }
 
-  bool follows_strokes() const override { return !options_.closed && options_.taper == 0.0F; }
+  /// The last pieces of the curve (rgbn/detail/stroke_line.h) may become others.
+  float looks_back() const override {
+    const bool anywhere = options_.closed || options_.taper > 0.0F;
+    return anywhere ? EditOperator::looks_back() : 0.25F * options_.width;
+  }
 
   void check_strokes(const std::vector<UnitStroke>& strokes,
                      const std::string& path) const override {

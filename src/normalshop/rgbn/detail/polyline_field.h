@@ -19,6 +19,7 @@ struct FieldVertex {
   float half_width;
   float fade;           ///< multiplies the height, 0 to 1; 1 where the profile changes the level
   float along = -1.0F;  ///< arc length; below 0: as measured from the first vertex
+  bool smooth = false;  ///< a point of a curve: pieces bend where they hardly turn
 };
 
 /// An open polyline, or closed contours that share one inside (winding number not 0).
@@ -74,40 +75,45 @@ class PolylineField {
   using List = std::vector<std::uint32_t>;
   using Samples = LineLanes<FieldSample>;
 
+  /// Some segments in a row, and a circle around them.
+  struct Chunk {
+    std::uint32_t first;
+    std::uint32_t end;
+    Vec2f center;
+    float radius;
+  };
+
   struct Shape {
     bool closed = false;
     float length = 0.0F;
     float largest_half_width = 0.0F;
     float orientation = 1.0F;  ///< 1: inside is to the left
     float top = 0.0F;
+    std::vector<Chunk> chunks;
     std::vector<List> bands;  ///< of segments by rows, for winding numbers
-  };
-
-  /// The segments that may matter in each tile of a region, in order.
-  struct Bins {
-    int columns = 0;
-    std::vector<List> tiles;
   };
 
   /// What matters in a few pixels by a few.
   struct Cell {
     List segments;
-    bool even = false;  ///< all of them, and where along them doesn't matter
+    bool even = false;   ///< all of them, and where along them doesn't matter
+    bool bends = false;  ///< any of them
   };
 
   void add(const FieldShape& shape);
   void add_contour(const std::vector<FieldVertex>& contour, bool closed);
   void fill_bands(Shape& shape, std::size_t first, float bottom) const;
   void grow_bounds(const LineSegment& segment, float half_width);
-  Bins bin(const Rect& region) const;
-  void render_tile(const Rect& tile, const List& segments, int grid, const Write& write) const;
+  std::vector<Chunk> chunks(std::size_t first) const;
+  void render_tile(const Rect& tile, int grid, const Write& write) const;
+  List near(const Rect& square) const;
   void prune(const List& segments, const Rect& cell, SegmentOffsets& offsets, List& kept) const;
+  void look_at(Cell& cell) const;
   Samples pixels(int x, int y, const Cell& cell, int grid) const;
   Samples sample(const LinePoints& points, const Cell& cell) const;
   Samples levels(const LinePoints& points, const Shape& shape) const;
   FieldSample level(const Vec2f& p, const Shape& shape) const;
-  Samples beside(const LinePoints& points, const Shape& shape, std::span<const std::uint32_t> list,
-                 bool even) const;
+  Samples beside(const LinePoints& points, const Shape& shape, const LineList& list) const;
   void turn_in(const Vec2f& p, const Shape& shape, std::size_t k, LinePlaces& places) const;
   FieldSample profiled(const LinePlaces& places, std::size_t k) const;
   FieldSample patterned(const Shape& shape, const LinePlaces& places, std::size_t k) const;

@@ -37,12 +37,20 @@ struct LinePlaces {
   LineLanes<float> along_y;
 };
 
-/// Places of points beside the segments of a list, of one shape with this largest half width. Arc
+/// Some segments, all of one shape.
+struct LineList {
+  std::span<const std::uint32_t> segments;
+  float largest_half_width;  ///< of the shape
+  bool even;                 ///< no width changes here and nobody asks for arc lengths: these are 0
+  bool bends;                ///< some segment does
+};
+
+/// Places of points beside the segments of a list. Arc
 /// lengths grow with directions that turn evenly along each segment instead of at its ends: the s
 /// with (p - q(s)) . t(s) = 0. They are continuous beside a bend, where the nearest point jumps in
-/// speed. `even`: no width changes here and nobody asks for arc lengths, so these are 0.
-void line_places(const SegmentColumns& segments, std::span<const std::uint32_t> list,
-                 float largest_half_width, bool even, const LinePoints& points, LinePlaces& out);
+/// speed.
+void line_places(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
+                 LinePlaces& out);
 
 /// From the nearest places on a list's segments to a point.
 struct SegmentOffsets {

@@ -44,25 +44,30 @@ inline float whole_length(const Stroke& stroke, const std::vector<float>& along)
   return is_part(stroke) ? stroke.front().along + stroke.front().rest : along.back();
 }
 
-/// A curve cut finely, without points between which it is all but straight: pieces become no longer
-/// than `longest` and turn by 1/512 at most: a tenth of a degree, which no highlight shows as
-/// edges. Where pressure changes, and at corners, points stay.
+/// A curve cut finely, without points between which it turns little: pieces become no longer than
+/// `longest` and turn by 1/64 at most, which is little for fields whose lines bend between their
+/// points. Where pressure does not change evenly, and at corners, points stay.
 inline Stroke without_flat_points(const Stroke& curve, float longest) {
-  constexpr float turn = 1.0F / 512.0F;
+  constexpr float turn = 1.0F / 64.0F;
+  constexpr float uneven = 1.0F / 512.0F;
   if (curve.size() < 3) return curve;
   Stroke out{curve.front()};
-  Vec2f first = (curve[1].position - curve[0].position).normalized();
+  const auto way = [&](std::size_t i) -> Vec2f {
+    return curve[i + 1].position - curve[i].position;
+  };
+  const auto rate = [&](std::size_t i) {
+    return (curve[i + 1].pressure - curve[i].pressure) / std::max(way(i).norm(), 1e-6F);
+  };
+  std::size_t first = 0;
   for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
-    const Vec2f next = curve[i + 1].position - curve[i].position;
-    const float length = next.norm();
-    const float pressure = out.back().pressure;
-    const bool flat = first.dot(next) > 0.0F && std::abs(cross(first, next)) <= turn * length;
-    if (flat && curve[i].pressure == pressure && curve[i + 1].pressure == pressure &&
-        (curve[i + 1].position - out.back().position).norm() <= longest) {
-      continue;
-    }
+    const Vec2f from = way(first);
+    const Vec2f next = way(i);
+    const float size = from.norm() * next.norm();
+    const float length = (curve[i + 1].position - out.back().position).norm();
+    const bool flat = from.dot(next) > 0.0F && std::abs(cross(from, next)) <= turn * size;
+    if (flat && std::abs(rate(i) - rate(first)) * length <= uneven && length <= longest) continue;
     out.push_back(curve[i]);
-    first = next / std::max(length, 1e-6F);
+    first = i;
   }
   out.push_back(curve.back());
   return out;
@@ -74,7 +79,9 @@ Stroke line_of(const Stroke& stroke, const Options& options) {
   if (!options.smooth || is_part(stroke)) return stroke;
   const float spacing = std::clamp(options.width / 8.0F, 1.0F, 3.0F);
   const StrokeEnds ends = options.closed ? StrokeEnds::Closed : StrokeEnds::Open;
-  return without_flat_points(smooth_stroke(stroke, spacing, ends), options.width / 8.0F);
+  constexpr float longest = 64.0F;  // pixels, so that bends stay well below one
+  return without_flat_points(smooth_stroke(stroke, spacing, ends),
+                             std::min(options.width / 8.0F, longest));
 }
 
 }  // namespace normalshop
