@@ -11,16 +11,18 @@ struct LivePush::State {
         const EditDirection& direction, SlopeView change, MaskView coverage)
       : edit{direction, change, coverage, chart.weight.rect()},
         sampler(EditSampler::growing(chart, edit)),
-        everywhere(chart, chart.weight.rect(), [](int, int) { return true; }) {
+        everywhere(chart, chart.weight.rect(), [](int, int) { return true; }),
+        changed(change, coverage) {
     for (std::size_t i = 0; i < storage.sets.size(); ++i) {
       sets.push_back(std::make_unique<LiveSet>(mesh, storage.sets[i], static_cast<std::uint32_t>(i),
-                                               sampler, everywhere));
+                                               sampler, everywhere, changed));
     }
   }
 
   ChartEdit edit;
   EditSampler sampler;
   EditReach everywhere;
+  ChangedBlocks changed;
   std::vector<std::unique_ptr<LiveSet>> sets;
 };
 
@@ -34,6 +36,7 @@ const std::vector<MapTile>& LivePush::update(const Rect& changed, StorageAtlas& 
   constexpr int read_beyond = 3;  // pixels, by a bicubic kernel
   tiles_.clear();
   state_->sampler.update(changed);
+  state_->changed.update(changed);
   const Rect near = intersect(grow(changed, read_beyond), state_->edit.region);
   if (near.empty()) return tiles_;
   for (std::size_t i = 0; i < state_->sets.size(); ++i) {

@@ -13,9 +13,11 @@ constexpr auto all_triangles = [](std::uint32_t) { return true; };
 }  // namespace
 
 LiveSet::LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index,
-                 const EditSampler& sampler, const EditReach& everywhere)
+                 const EditSampler& sampler, const EditReach& everywhere,
+                 const ChangedBlocks& changed)
     : before_(set.normals),
       everywhere_(everywhere),
+      changed_(changed),
       editor_(mesh, sampler, set.texels, before_),
       places_(mesh, set.texels, index, sampler.grid()),
       tiles_(static_cast<std::size_t>(NormalMap::tiles_along(before_.width())) *
@@ -35,7 +37,7 @@ std::vector<int> LiveSet::update(const Rect& pixels, NormalMap& map) {
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     TexelLanes lanes;
     for (std::size_t i = begin; i < end; ++i) {
-      edit_tile(tiles[i], pixels, shared_writes, lanes, map);
+      edit_tile(tiles[i], shared_writes, lanes, map);
     }
   });
   put(shared_writes, map);
@@ -61,13 +63,13 @@ void LiveSet::find_seen(const std::vector<int>& tiles) {
 }
 
 /// The tile's texels by their owners. Those on which the edit does not act become what they were.
-void LiveSet::edit_tile(int index, const Rect& pixels, const std::vector<TexelWrite>& shared,
-                        TexelLanes& lanes, NormalMap& map) {
+void LiveSet::edit_tile(int index, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
+                        NormalMap& map) {
   Tile& tile = tiles_[static_cast<std::size_t>(index)];
   // What shared texels become may depend on pixels far away.
   const bool whole = places_.shares(index);
   for (const SeenTexels& seen : tile.seen) {
-    if (!whole && !seen.meets(pixels)) continue;
+    if (!whole && !changed_.meet(seen.left, seen.top, seen.right, seen.bottom)) continue;
     tile.visited += static_cast<std::size_t>(seen.count);
     const bool acts = seen.load(editor_.sampler().reach(), lanes) && editor_.edit_weighed(lanes);
     for (int i = 0; i < seen.count; ++i) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "normalshop/chart/changed_blocks.h"
 #include "normalshop/chart/normal_editor.h"
 #include "normalshop/chart/push_tally.h"
 #include "normalshop/chart/seen_texels.h"
@@ -16,12 +17,12 @@ namespace normalshop {
 /// so that they become what push() makes of them.
 class LiveSet {
  public:
-  /// `sampler` and `everywhere` (each pixel of the chart acts) stay with the LivePush.
+  /// `sampler`, `everywhere` (each pixel of the chart acts) and `changed` stay with the LivePush.
   LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index, const EditSampler& sampler,
-          const EditReach& everywhere);
+          const EditReach& everywhere, const ChangedBlocks& changed);
 
-  /// Stores what the edit makes of all texels in these pixels. Returns the tiles that may look
-  /// different.
+  /// Stores what the edit makes of all texels in these pixels, given what has changed there.
+  /// Returns the tiles that may look different.
   std::vector<int> update(const Rect& pixels, NormalMap& map);
   /// Of all updates: what they came to, and how `map` differs from before.
   PushTally tally(const NormalMap& map) const;
@@ -37,8 +38,8 @@ class LiveSet {
     std::bitset<side * side> changed;  ///< texels
   };
   void find_seen(const std::vector<int>& tiles);
-  void edit_tile(int index, const Rect& pixels, const std::vector<TexelWrite>& shared,
-                 TexelLanes& lanes, NormalMap& map);
+  void edit_tile(int index, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
+                 NormalMap& map);
   template <class Item>
   void restore(const std::vector<Item>& items, NormalMap& map);
   void put(const std::vector<TexelWrite>& writes, NormalMap& map);
@@ -48,6 +49,7 @@ class LiveSet {
 
   NormalMap before_;
   const EditReach& everywhere_;
+  const ChangedBlocks& changed_;
   NormalEditor editor_;
   TilePlaces places_;
   std::vector<Tile> tiles_;

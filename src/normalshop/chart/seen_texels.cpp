@@ -50,11 +50,6 @@ void append_seen(const EditReach& everywhere, TexelLanes& lanes, std::vector<See
   }
 }
 
-bool SeenTexels::meets(const Rect& pixels) const {
-  return left < static_cast<float>(pixels.x1) && right >= static_cast<float>(pixels.x0) &&
-         top < static_cast<float>(pixels.y1) && bottom >= static_cast<float>(pixels.y0);
-}
-
 bool SeenTexels::load(const EditReach& reach, TexelLanes& lanes) const {
   TexelBatch& batch = lanes.batch;
   batch.count = count;

@@ -30,7 +30,6 @@ struct SeenTexels {
   float right = -1.0F;
   float bottom = -1.0F;
 
-  bool meets(const Rect& pixels) const;
   /// Makes lanes of them, without weight where an edit does not reach. False when it reaches none.
   bool load(const EditReach& reach, TexelLanes& lanes) const;
 };
