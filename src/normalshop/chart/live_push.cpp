@@ -53,7 +53,7 @@ PushResult LivePush::result(const StorageAtlas& storage) const {
   for (std::size_t i = 0; i < state_->sets.size(); ++i) {
     all.add(state_->sets[i]->tally(storage.sets[i].normals));
   }
-  return {all.visited, all.changed, degrees_of_turn(all.largest)};
+  return result_of(all);
 }
 
 void LivePush::restore(StorageAtlas& storage) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "normalshop/chart/shared_cursor.h"
 #include "normalshop/core/parallel.h"
 
 namespace normalshop {
@@ -119,10 +120,12 @@ PushTally LiveSet::tally(const NormalMap& map) const {
     all.visited += tile.visited;
     all.changed += tile.changed.count();
     if (tile.changed.none()) continue;
+    SharedCursor covered(editor_.texels().shared());
     for (int i = 0; i < side * side; ++i) {
       if (!tile.changed[static_cast<std::size_t>(i)]) continue;
       const int x = static_cast<int>(t) % columns * side + i % side;
       const int y = static_cast<int>(t) / columns * side + i / side;
+      if (covered.holds(texel_index(x, y, map.width()))) ++all.shared;
       const Vec3f moved = map.normal(x, y).normalized() - before_.normal(x, y).normalized();
       all.largest = std::max(all.largest, 0.5F * moved.squaredNorm());
     }

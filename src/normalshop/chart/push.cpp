@@ -24,7 +24,7 @@ PushResult push(const Mesh& mesh, const EditingChart& chart, const ChartEdit& ed
     SetPush set(mesh, sampler, storage.sets[i], static_cast<std::uint32_t>(i), target);
     tally.add(set.run());
   }
-  return {tally.visited, tally.changed, degrees_of_turn(tally.largest)};
+  return result_of(tally);
 }
 
 }  // namespace normalshop

@@ -19,8 +19,11 @@ struct ChartEdit {
 };
 
 struct PushResult {
-  std::size_t visited = 0;      ///< texels of triangles that may lie in the region
-  std::size_t changed = 0;      ///< texels and gutter texels with a new normal
+  std::size_t visited = 0;  ///< texels of triangles that may lie in the region
+  std::size_t changed = 0;  ///< texels and gutter texels with a new normal
+  /// Of these, the texels that further triangles cover (TexelMap::shared()): the model changes
+  /// there, too.
+  std::size_t shared = 0;
   float largest_change = 0.0F;  ///< degrees by which the edit turned one of them at most
 };
 

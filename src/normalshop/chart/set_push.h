@@ -6,6 +6,7 @@
 #include "normalshop/chart/normal_editor.h"
 #include "normalshop/chart/push_candidates.h"
 #include "normalshop/chart/push_tally.h"
+#include "normalshop/chart/shared_cursor.h"
 
 /// How an edit of normals comes to the texels of one map, private to floor 4.
 namespace normalshop {
@@ -39,10 +40,12 @@ PushTally SetPush<Target>::edit_row(TexelLanes& row) {
   PushTally tally;
   tally.visited = static_cast<std::size_t>(row.batch.count);
   if (!editor_.edit(row)) return tally;
+  SharedCursor covered(editor_.texels().shared());
   for (int i = 0; i < row.batch.count; ++i) {
     const std::uint32_t index = row.texels[static_cast<std::size_t>(i)];
     if (!row.batch.acts(i) || holds_texel(shared_, index)) continue;
     put(editor_.write_of(row.batch, i, index), tally);
+    if (covered.holds(index)) ++tally.shared;
   }
   return tally;
 }
@@ -82,6 +85,7 @@ PushTally SetPush<Target>::run() {
     tally.add(local);
   });
   tally.add(put(shared_));
+  tally.shared += shared_.size();
   tally.add(put(gutter));
   return tally;
 }

@@ -62,8 +62,10 @@ Vec3f SurfaceBlend::Tile::result(std::size_t i, const Vec3f& before) const {
   return (normal - before).squaredNorm() < least_turn ? Vec3f(Vec3f::Zero()) : normal;
 }
 
-PushTally SurfaceBlend::write_tile(const Tile& tile, int x0, int y0, NormalMap& map) {
+PushTally SurfaceBlend::write_tile(const Tile& tile, int x0, int y0, StorageSet& set) {
   PushTally tally;
+  NormalMap& map = set.normals;
+  SharedCursor covered(set.texels.shared());
   for (int i = 0; i < side * side; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!(tile.share[k] > 0.0F)) continue;
@@ -75,6 +77,7 @@ PushTally SurfaceBlend::write_tile(const Tile& tile, int x0, int y0, NormalMap& 
     map.set_normal(x, y, normal);
     if (!before.isZero()) tally.largest = std::max(tally.largest, 1.0F - normal.dot(before));
     ++tally.changed;
+    if (covered.holds(texel_index(x, y, map.width()))) ++tally.shared;
   }
   return tally;
 }
@@ -83,20 +86,21 @@ PushResult SurfaceBlend::write(StorageAtlas& storage) const {
   PushTally all;
   std::mutex mutex;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
-    NormalMap& map = storage.sets[s].normals;
-    const int columns = NormalMap::tiles_along(map.width());
+    StorageSet& set = storage.sets[s];
+    const int columns = NormalMap::tiles_along(set.normals.width());
     parallel_for(sets_[s].size(), 16, [&](std::size_t begin, std::size_t end) {
       PushTally local;
       for (std::size_t t = begin; t < end; ++t) {
         const auto i = static_cast<int>(t);
         if (!sets_[s][t]) continue;
-        local.add(write_tile(*sets_[s][t], i % columns * side, i / columns * side, map));
+        local.add(write_tile(*sets_[s][t], i % columns * side, i / columns * side, set));
       }
       const std::lock_guard lock(mutex);
       all.add(local);
     });
   }
-  return {visited_, all.changed, degrees_of_turn(all.largest)};
+  all.visited = visited_;
+  return result_of(all);
 }
 
 }  // namespace normalshop

@@ -39,7 +39,7 @@ class SurfaceBlend {
   };
   struct Target;
   using Tiles = std::vector<std::unique_ptr<Tile>>;
-  static PushTally write_tile(const Tile& tile, int x0, int y0, NormalMap& map);
+  static PushTally write_tile(const Tile& tile, int x0, int y0, StorageSet& set);
 
   std::vector<Tiles> sets_;
   std::size_t visited_ = 0;

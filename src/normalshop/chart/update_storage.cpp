@@ -13,6 +13,8 @@
 #include <Eigen/LU>
 
 #include "normalshop/chart/details.h"
+#include "normalshop/chart/push_tally.h"
+#include "normalshop/chart/shared_cursor.h"
 #include "normalshop/chart/texel_writes.h"
 #include "normalshop/core/parallel.h"
 
@@ -132,19 +134,19 @@ class TileUpdate {
     sampled_->fill({std::numeric_limits<float>::infinity(), 0, Vec3f::Zero()});
     for (const std::uint32_t pixel : pixels) sample(pixel);
     const std::size_t set = mesh_.texture_sets[chart_.ids.triangle.data()[pixels.front()]];
+    SharedCursor covered(storage_.sets[set].texels.shared());
     for (const Sampled& s : *sampled_) {
-      if (s.distance < std::numeric_limits<float>::infinity()) write(set, s);
+      if (s.distance < std::numeric_limits<float>::infinity()) write(set, s, covered);
     }
   }
-  std::size_t written() const { return written_; }
-  float largest() const { return largest_; }
+  const PushTally& tally() const { return tally_; }
 
  private:
   Vec3f edited_normal(std::size_t pixel) const;
   std::uint32_t frame_triangle(const TexelMap& map, std::uint32_t texel,
                                std::uint32_t triangle) const;
   void sample(std::uint32_t pixel);
-  void write(std::size_t set, const Sampled& sampled);
+  void write(std::size_t set, const Sampled& sampled, SharedCursor& covered);
 
   const Mesh& mesh_;
   const EditingChart& chart_;
@@ -153,8 +155,7 @@ class TileUpdate {
   StorageAtlas& storage_;
   TriangleCache<PushTriangle> triangles_;
   std::unique_ptr<std::array<Sampled, texels_a_tile>> sampled_;
-  std::size_t written_ = 0;
-  float largest_ = 0.0F;  // 1 - cos of the angle
+  PushTally tally_;
 };
 
 /// push()'s formula at a pixel. Where nothing happens the pixel's normal as it is.
@@ -208,7 +209,7 @@ void TileUpdate::sample(std::uint32_t pixel) {
   }
 }
 
-void TileUpdate::write(std::size_t set, const Sampled& sampled) {
+void TileUpdate::write(std::size_t set, const Sampled& sampled, SharedCursor& covered) {
   StorageSet& storage = storage_.sets[set];
   const std::uint32_t texel = chart_.texel.data()[sampled.pixel];
   const TexelPlace at = texel_place(texel, storage.normals.width());
@@ -222,9 +223,12 @@ void TileUpdate::write(std::size_t set, const Sampled& sampled) {
   const Vec3f coded = (frame.inverse() * edited).normalized();
   if (!coded.allFinite() || coded.isZero()) return;
   const Vec3f before = storage.normals.normal(at.x, at.y);
-  if (!before.isZero()) largest_ = std::max(largest_, 0.5F * (coded - before).squaredNorm());
+  if (!before.isZero()) {
+    tally_.largest = std::max(tally_.largest, 0.5F * (coded - before).squaredNorm());
+  }
   storage.normals.set_normal(at.x, at.y, coded);
-  ++written_;
+  ++tally_.changed;
+  if (covered.holds(texel)) ++tally_.shared;
 }
 
 }  // namespace
@@ -234,21 +238,18 @@ PushResult update_storage(const Mesh& mesh, const EditingChart& chart, const Cha
   assert(how != Update::Gather && chart.texel.rect() == chart.ids.triangle.rect());
   assert(chart.normal.rect() == chart.ids.triangle.rect());
   const Rect region = intersect(edit.region, chart.ids.triangle.rect());
-  PushResult result;
-  if (region.empty()) return result;
+  if (region.empty()) return {};
   const PixelsByTile tiles(mesh, chart, region, storage);
-  float largest = 0.0F;
+  PushTally all;
   std::mutex mutex;
   parallel_for(tiles.count(), 4, [&](std::size_t begin, std::size_t end) {
     TileUpdate task(mesh, chart, edit, how, storage);
     for (std::size_t i = begin; i < end; ++i) task.update(tiles.pixels(i));
     const std::lock_guard lock(mutex);
-    result.changed += task.written();
-    largest = std::max(largest, task.largest());
+    all.add(task.tally());
   });
-  result.visited = result.changed;
-  result.largest_change = degrees_of_turn(largest);
-  return result;
+  all.visited = all.changed;
+  return result_of(all);
 }
 
 }  // namespace normalshop

@@ -101,6 +101,7 @@ void add(const EditReport& other, EditReport& report) {
   report.coarser_than_texels = report.coarser_than_texels || other.coarser_than_texels;
   report.pushed.visited += other.pushed.visited;
   report.pushed.changed += other.pushed.changed;
+  report.pushed.shared += other.pushed.shared;
   report.pushed.largest_change =
       std::max(report.pushed.largest_change, other.pushed.largest_change);
   report.colors_changed += other.colors_changed;

@@ -68,6 +68,14 @@ void note_relief(const Edit& edit, const ReliefReach& relief, std::vector<std::s
   }
 }
 
+void note_shared(const Edit& edit, const PushResult& pushed, std::vector<std::string>& notes) {
+  if (pushed.shared == 0) return;
+  const std::string part = pushed.shared == pushed.changed ? "all" : std::to_string(pushed.shared);
+  notes.push_back(edit.path + ": " + part + " of its " + std::to_string(pushed.changed) +
+                  " texels lie under other triangles too (overlapping or mirrored charts), so that "
+                  "the model changes there as well");
+}
+
 void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   Document& document = job.opened.document;
   clock.start("seams");
@@ -78,6 +86,7 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   for (const Edit& edit : recipe.edits) {
     job.edits.push_back(document.apply(edit, job.transfer));
     note_relief(edit, job.edits.back().relief, job.notes);
+    note_shared(edit, job.edits.back().pushed, job.notes);
     if (job.edits.back().coarser_than_texels) {
       job.notes.push_back(edit.path +
                           ": covers more texels than an editing chart has pixels, so it "
@@ -127,6 +136,7 @@ Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports
     const EditReport& e = reports[i];
     out.push_back(Value::Object{{"operator", log[i].operation->name()},
                                 {"texels_changed", e.pushed.changed},
+                                {"texels_shared", e.pushed.shared},
                                 {"largest_change_degrees", e.pushed.largest_change},
                                 {"colors_changed", e.colors_changed},
                                 {"largest_height_over_radius", e.relief.largest},
