@@ -165,6 +165,48 @@ TEST(SurfaceBlend, reaches_the_inside_of_a_cavity) {
   EXPECT_EQ(missed, 0U);
 }
 
+/// A roof whose slopes share the texels, mirrored. Each is seen by one view alone, which adds the
+/// same slope: in the map these are not the same.
+TEST(SurfaceBlend, gives_shared_texels_to_the_first_of_their_triangles) {
+  Mesh mesh = mirrored_pair(4);
+  const auto half = 3 * mesh.triangle_count() / 2;
+  const std::array<Vec3f, 2> normals{Vec3f(0.8F, 0, 0.6F), Vec3f(-0.8F, 0, 0.6F)};
+  for (Vec3f& p : mesh.positions) p = Vec3f(0.6F * p.x(), p.y(), -0.8F * std::abs(p.x()));
+  for (std::size_t c = 0; c < 2 * half; ++c) {
+    Vec4f& t = mesh.tangents[c];
+    mesh.normals[c] = normals[c / half];
+    t.head<3>() = t.x() * Vec3f(0.6F, 0, c < half ? -0.8F : 0.8F);
+  }
+  const StorageAtlas before = storage_of(mesh, noise_map(64, CodeType::U16));
+  const auto edited = [&](std::initializer_list<int> views, PushResult& result) {
+    StorageAtlas storage = before;
+    SurfaceBlend blend(storage);
+    for (const int view : views) {
+      const EditingChart chart =
+          chart_from(mesh, storage, normals[static_cast<std::size_t>(view)], 120);
+      const EditImages images = constant_edit(chart, {0.3F, 0.1F});
+      blend.add(mesh, chart, images.edit(EditMode::Base), storage);
+    }
+    result = blend.write(storage);
+    return storage;
+  };
+  PushResult result;
+  const StorageAtlas first = edited({0}, result);
+  const StorageAtlas second = edited({1}, result);
+  float apart = 0.0F;
+  for (const auto& views : {std::initializer_list<int>{0, 1}, {1, 0}}) {
+    const StorageAtlas both = edited(views, result);
+    EXPECT_EQ(result.changed, 64U * 64U);
+    EXPECT_EQ(result.shared, 64U * 64U);
+    for_texels(both, [&](int x, int y, const SurfacePoint&) {
+      const Vec3f n = first.sets[0].normals.normal(x, y);
+      ASSERT_EQ(both.sets[0].normals.normal(x, y), n);
+      apart += (second.sets[0].normals.normal(x, y) - n).norm() / (2.0F * 64.0F * 64.0F);
+    });
+  }
+  EXPECT_GT(apart, 0.3F);
+}
+
 TEST(SurfaceBlend, of_no_change_stores_nothing) {
   StorageAtlas storage = storage_of(sphere(), noise_map(64, CodeType::U8));
   EXPECT_EQ(blend_constant(sphere(), sphere_views(), storage, {0, 0}).changed, 0U);

@@ -76,7 +76,10 @@ void LiveSet::edit_tile(int index, const std::vector<TexelWrite>& shared, TexelL
     for (int i = 0; i < seen.count; ++i) {
       const std::uint32_t texel = seen.texels[static_cast<std::size_t>(i)];
       if (acts && lanes.batch.acts(i)) {
-        if (!holds_texel(shared, texel)) put(tile, editor_.write_of(lanes.batch, i, texel), map);
+        const std::uint32_t owner = seen.triangles[static_cast<std::size_t>(i)];
+        if (!holds_texel(shared, texel)) {
+          put(tile, editor_.write_of(lanes.batch, i, texel, owner), map);
+        }
       } else {
         restore(tile, texel, map);
       }

@@ -21,12 +21,20 @@ bool NormalEditor::edit_weighed(TexelLanes& lanes) const {
   return true;
 }
 
+namespace {
+
+std::uint32_t decoding_triangle(const GutterTexel& g) { return g.owner; }
+std::uint32_t decoding_triangle(const SharedTexel& s) { return s.triangle; }
+
+}  // namespace
+
 template <class Item>
 void NormalEditor::collect(const TexelBatch& batch, const PerLane<const Item*>& items,
                            std::vector<TexelWrite>& out) const {
   for (int i = 0; i < batch.count; ++i) {
     if (!batch.acts(i)) continue;
-    out.push_back(write_of(batch, i, items[static_cast<std::size_t>(i)]->texel));
+    const Item& item = *items[static_cast<std::size_t>(i)];
+    out.push_back(write_of(batch, i, item.texel, decoding_triangle(item)));
   }
 }
 

@@ -32,10 +32,11 @@ class NormalEditor {
   bool edit(TexelLanes& lanes) const;
   /// The same of lanes whose weight is there already.
   bool edit_weighed(TexelLanes& lanes) const;
-  /// The write of lane i, on which the edit acts.
-  TexelWrite write_of(const TexelBatch& batch, int i, std::uint32_t texel) const {
+  /// The write of lane i, on which the edit acts, of a texel that the triangle's frame decodes.
+  TexelWrite write_of(const TexelBatch& batch, int i, std::uint32_t texel,
+                      std::uint32_t triangle) const {
     const auto k = static_cast<std::size_t>(i);
-    TexelWrite write{texel, batch.weight[k], batch.result.get(i), batch.turn[k]};
+    TexelWrite write{texel, batch.weight[k], batch.result.get(i), batch.turn[k], 0.0F, triangle};
     if (facing_ == Facing::Told) {
       const Vec3f base = batch.base.get(i);
       write.facing = base.z() / base.norm();

@@ -44,7 +44,8 @@ PushTally SetPush<Target>::edit_row(TexelLanes& row) {
   for (int i = 0; i < row.batch.count; ++i) {
     const std::uint32_t index = row.texels[static_cast<std::size_t>(i)];
     if (!row.batch.acts(i) || holds_texel(shared_, index)) continue;
-    put(editor_.write_of(row.batch, i, index), tally);
+    const std::uint32_t owner = row.triangles[static_cast<std::size_t>(i)];
+    put(editor_.write_of(row.batch, i, index, owner), tally);
     if (covered.holds(index)) ++tally.shared;
   }
   return tally;

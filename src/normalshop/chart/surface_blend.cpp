@@ -21,13 +21,16 @@ Vec3f unit_or_zero(const Vec3f& v) {
 struct SurfaceBlend::Target {
   static constexpr auto facing = NormalEditor::Facing::Told;
   const NormalMap& normals;
+  const std::vector<std::uint8_t>& part;
   Tiles& tiles;
 
   void put(int x, int y, const TexelWrite& write) {
+    if (!part.empty() && part[write.triangle] == 0) return;
     auto& tile = tiles[static_cast<std::size_t>(y / side * NormalMap::tiles_along(normals.width()) +
                                                 x / side)];
     if (!tile) tile = std::make_unique<Tile>();
     const std::size_t i = NormalMap::index_in_tile(x, y);
+    if (!tile->take(i, write.triangle)) return;
     const float factor = facing_share(write.facing);
     // The weight is in what the normal turns by already.
     tile->turned[i] += factor * (write.value - unit_or_zero(normals.vector(x, y)));
@@ -36,7 +39,19 @@ struct SurfaceBlend::Target {
   }
 };
 
-SurfaceBlend::SurfaceBlend(const StorageAtlas& storage) {
+/// Whether a triangle may have a texel; it loses what later ones did to it.
+bool SurfaceBlend::Tile::take(std::size_t i, std::uint32_t by) {
+  if (by > triangle[i]) return false;
+  if (by < triangle[i]) {
+    triangle[i] = by;
+    turned[i] = Vec3f::Zero();
+    share[i] = weight[i] = 0.0F;
+  }
+  return true;
+}
+
+SurfaceBlend::SurfaceBlend(const StorageAtlas& storage, std::vector<std::uint8_t> part)
+    : part_(std::move(part)) {
   for (const StorageSet& set : storage.sets) {
     sets_.emplace_back(static_cast<std::size_t>(NormalMap::tiles_along(set.normals.width())) *
                        static_cast<std::size_t>(NormalMap::tiles_along(set.normals.height())));
@@ -47,7 +62,7 @@ void SurfaceBlend::add(const Mesh& mesh, const EditingChart& chart, const ChartE
                        const StorageAtlas& storage) {
   const EditSampler sampler(chart, edit);
   for (std::size_t i = 0; i < storage.sets.size(); ++i) {
-    Target target{storage.sets[i].normals, sets_[i]};
+    Target target{storage.sets[i].normals, part_, sets_[i]};
     SetPush push(mesh, sampler, storage.sets[i], static_cast<std::uint32_t>(i), target);
     visited_ += push.run().visited;
   }

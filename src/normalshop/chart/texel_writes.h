@@ -18,6 +18,7 @@ struct TexelWrite {
   Vec3f value;          ///< the new normal, or what its colour grows by
   float turn = 0.0F;    ///< of normals: 1 - cos of the angle between before and after
   float facing = 0.0F;  ///< of normals: cosine between the base normal and the viewing direction
+  std::uint32_t triangle = 0;  ///< of normals: the one whose frame decodes the texel
 };
 
 /// Index of a texel as TexelWrite has it.
