@@ -10,6 +10,7 @@
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/prepare_edit.h"
 #include "normalshop/document/stroke_views.h"
+#include "normalshop/document/surface_part.h"
 #include "normalshop/surface/seam_fit.h"
 
 namespace normalshop {
@@ -121,10 +122,13 @@ PreparedEdit prepare_facing(const Edit& edit, const View& view, const Mesh& mesh
 /// All views see what was there before any of them; their mean is stored at once.
 class SurfaceEdit {
  public:
-  SurfaceEdit(const Mesh& mesh, StorageAtlas& storage)
-      : mesh_(mesh), storage_(storage), blend_(storage) {}
+  SurfaceEdit(const Edit& edit, const Mesh& mesh, StorageAtlas& storage)
+      : mesh_(mesh), storage_(storage), part_(edit, mesh), blend_(storage, part_.triangles()) {}
 
-  void add(const Edit& edit, const CoverView& view) {
+  void add(const Edit& edit, const CoverView& whole) {
+    const CoverView view = part_.narrowed(whole, mesh_);
+    if (!(view.low.x() < view.high.x() && view.low.y() < view.high.y())) return;
+    shown_ = true;
     PreparedEdit prepared = prepare_edit(edit, view, mesh_, storage_);
     if (!prepared.faces) return;
     faces_ = true;
@@ -135,11 +139,15 @@ class SurfaceEdit {
   }
   /// What reaches all of the surface leaves no seam, either.
   void store(const Edit& edit, std::span<const SeamEdge> seams, float kept) {
+    if (!shown_) {
+      throw InvalidInput(edit.path + ".part must hold surface with a front side that " +
+                         (edit.surface_strokes.empty() ? "faces a view" : "the strokes come near"));
+    }
     if (!faces_) fail_averted(edit);
     Stopwatch watch;
     const std::vector<NormalMap> before = copies(storage_);
     report.pushed = blend_.write(storage_);
-    fit(mesh_, seams, kept, pointers(before), storage_);
+    fit(mesh_, part_.seams_within(seams), kept, pointers(before), storage_);
     report.times.push += watch.lap();
   }
 
@@ -148,7 +156,9 @@ class SurfaceEdit {
  private:
   const Mesh& mesh_;
   StorageAtlas& storage_;
+  PartMask part_;
   SurfaceBlend blend_;
+  bool shown_ = false;  // does any view show the part?
   bool faces_ = false;  // does the edit's direction see any of the surface?
 };
 
@@ -169,7 +179,7 @@ EditReport apply_along_strokes(const Edit& edit, const Mesh& mesh, std::span<con
                        ".strokes must follow surface with a front side: the model's normals must "
                        "point outwards there");
   }
-  SurfaceEdit all(mesh, storage);
+  SurfaceEdit all(edit, mesh, storage);
   all.report.times.pull = watch.lap();
   Edit part = edit;
   for (const StrokeView& view : views) {
@@ -194,7 +204,7 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
                        ".view: no view shows a front side of the surface; the model's " +
                        "normals must point outwards");
   }
-  SurfaceEdit all(mesh, storage);
+  SurfaceEdit all(edit, mesh, storage);
   all.report.times.pull = watch.lap();
   for (const CoverView& view : cover.views) all.add(edit, view);
   all.store(edit, seams, 1.0F - edit.strength);

@@ -29,6 +29,10 @@ struct FacingView {
 struct SurfaceView {
   int views = 0;  ///< at most; 0: chosen
 };
+/// The charts of the atlas (connected in it) that hold the surface points nearest to these.
+struct SurfacePart {
+  std::vector<Vec3f> charts_at;
+};
 using ViewSpec = std::variant<NamedView, FreeView, FacingView, SurfaceView>;
 /// The one view that a spec means; not for SurfaceView.
 View resolve(const ViewSpec& spec, const Mesh& mesh);
@@ -89,6 +93,7 @@ struct Edit {
   ChartWindow window = ChartWindow::Strokes;
   std::vector<UnitStroke> strokes;
   std::vector<SurfaceStroke> surface_strokes;  ///< of a SurfaceView alone, instead of strokes
+  std::optional<SurfacePart> part;             ///< of a SurfaceView alone; none: all of it
   std::optional<MirrorPlane> mirror;           ///< makes the edit's mirror image, too
   std::string path;  ///< where it was read from, for messages: "scar.json: edits[0]"
 };

@@ -311,6 +311,7 @@ EditReport ImageDocument::apply(const Edit& edit) {
                        "strokes could follow");
   }
   if (edit.mirror) throw InvalidInput(edit.path + ".mirror must be left out for a picture");
+  if (edit.part) throw InvalidInput(edit.path + ".part must be left out for a picture");
   Stopwatch watch;
   const Placed placed = place(edit, images_);
   EditReport report;

@@ -173,6 +173,17 @@ void check_for_surface(const Edit& edit, const FieldReader& reader) {
   }
 }
 
+SurfacePart read_part(const FieldReader& reader, bool surface) {
+  if (!surface) reader.fail("left out where the view is not \"surface\"");
+  if (reader.value().object() == nullptr) reader.fail("an object with \"charts_at\"");
+  reader.only({"charts_at"});
+  const FieldReader points = reader.required("charts_at");
+  SurfacePart part;
+  for (const FieldReader& point : points.items()) part.charts_at.push_back(point.vec3());
+  if (part.charts_at.empty()) points.fail("a list of at least one point [x, y, z]");
+  return part;
+}
+
 void read_mode(const FieldReader& reader, Edit& edit) {
   const std::vector<std::string_view> names{name_of(EditMode::View), name_of(EditMode::Base)};
   if (reader.value().text() != nullptr) {
@@ -195,7 +206,7 @@ Value mode_value(const Edit& edit) {
 
 Edit read_edit(const FieldReader& reader, Assets& assets) {
   reader.only({"operator", "view", "mode", "curvature", "details", "strength", "effective", "spray",
-               "window", "options", "strokes", "mirror", "comment"});
+               "window", "options", "strokes", "mirror", "part", "comment"});
   Edit edit;
   edit.path = reader.path();
   edit.operation = read_operator(reader, assets);
@@ -229,6 +240,7 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
     edit.surface_strokes = read_strokes(reader.required("strokes"), read_surface_point);
   }
   if (reader.has("mirror")) edit.mirror = read_mirror(reader.required("mirror"));
+  if (reader.has("part")) edit.part = read_part(reader.required("part"), surface);
   if (surface) {
     check_for_surface(edit, reader);
   } else {
@@ -293,6 +305,12 @@ Value surface_strokes_value(const std::vector<SurfaceStroke>& strokes) {
   return out;
 }
 
+Value part_value(const SurfacePart& part) {
+  Value::Array points;
+  for (const Vec3f& point : part.charts_at) points.emplace_back(vec3_value(point));
+  return Value::Object{{"charts_at", points}};
+}
+
 }  // namespace
 
 Edit read_edit(const Value& edit, const std::string& path, Assets& assets) {
@@ -329,6 +347,7 @@ Value to_value(const Recipe& recipe) {
     if (!edit.surface_strokes.empty()) {
       fields.emplace_back("strokes", surface_strokes_value(edit.surface_strokes));
     }
+    if (edit.part) fields.emplace_back("part", part_value(*edit.part));
     if (edit.mirror) {
       fields.emplace_back(
           "mirror", Value::Object{{"axis", name_of(edit.mirror->axis)}, {"at", edit.mirror->at}});

@@ -22,15 +22,6 @@ std::string length_text(float number) {
   return text.data();
 }
 
-SurfacePoint snap(const Mesh& mesh, const Vec3f& position, float limit, const std::string& field) {
-  const SurfacePoint point = nearest_surface_point(mesh, position);
-  const float distance = (position_at(mesh, point) - position).norm();
-  if (distance <= limit) return point;
-  throw InvalidInput(field + " must lie within " + length_text(limit) +
-                     " object units (a twentieth of the model's size) of the surface, not " +
-                     length_text(distance));
-}
-
 float weight_of(const Mesh& mesh, std::uint32_t triangle, int corner, const Vec3f& p) {
   const std::size_t first = 3 * static_cast<std::size_t>(triangle);
   const auto at = [&](int k) {
@@ -105,9 +96,18 @@ void face(Trace& trace, float around) {
 
 }  // namespace
 
+SurfacePoint surface_point_near(const Mesh& mesh, const Vec3f& position, const std::string& field) {
+  const float limit = farthest_share * bounds(mesh).diagonal();
+  const SurfacePoint point = nearest_surface_point(mesh, position);
+  const float distance = (position_at(mesh, point) - position).norm();
+  if (distance <= limit) return point;
+  throw InvalidInput(field + " must lie within " + length_text(limit) +
+                     " object units (a twentieth of the model's size) of the surface, not " +
+                     length_text(distance));
+}
+
 std::vector<Trace> trace_strokes(const Edit& edit, const Mesh& mesh, const Topology& topology,
                                  const TraceOptions& options) {
-  const float limit = farthest_share * bounds(mesh).diagonal();
   std::vector<Trace> traces;
   for (std::size_t i = 0; i < edit.surface_strokes.size(); ++i) {
     const std::string field = edit.path + ".strokes[" + std::to_string(i) + "]";
@@ -115,7 +115,7 @@ std::vector<Trace> trace_strokes(const Edit& edit, const Mesh& mesh, const Topol
     std::vector<SurfacePoint> points;
     for (std::size_t j = 0; j < stroke.size(); ++j) {
       points.push_back(
-          snap(mesh, stroke[j].position, limit, field + "[" + std::to_string(j) + "]"));
+          surface_point_near(mesh, stroke[j].position, field + "[" + std::to_string(j) + "]"));
     }
     try {
       traces.push_back(sample_path(mesh, geodesic(mesh, topology, points), stroke, options.step));

@@ -30,4 +30,8 @@ struct TraceOptions {
 std::vector<Trace> trace_strokes(const Edit& edit, const Mesh& mesh, const Topology& topology,
                                  const TraceOptions& options);
 
+/// The surface point nearest to one that a field of an edit gives. Throws InvalidInput, naming the
+/// field, where it is further away than a twentieth of the model's size.
+SurfacePoint surface_point_near(const Mesh& mesh, const Vec3f& position, const std::string& field);
+
 }  // namespace normalshop
