@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "chart_fixtures.h"
+#include "support/chart_bijection.h"
 #include "support/meshes.h"
 #include <gtest/gtest.h>
 
@@ -101,6 +102,22 @@ TEST(Cover, refuses_a_model_without_surface) {
   Mesh flat = plane_grid(1);
   for (Vec3f& p : flat.positions) p = Vec3f::Ones();
   EXPECT_THROW(cover_surface(flat, {}), InvalidInput);
+}
+
+/// Texels that a view's chart shows are changed, and no other, whatever the sizes of both.
+TEST(Cover, gives_views_whose_effective_charts_are_updated_wholly) {
+  for (const float side : {60.0F, 250.0F}) {
+    const StorageAtlas storage = storage_of(sphere(), flat_normal_map(128, 128, CodeType::U8));
+    Bijection all;
+    for (const CoverView& view : sphere_views()) {
+      const float pixel = std::max(view.view.width, view.view.height) / side;
+      EditingChart chart = chart_of(sphere(), storage, view, pixel, {});
+      all.add(edit_all(sphere(), storage, chart));
+    }
+    EXPECT_GT(all.effective, 50000U);
+    EXPECT_GT(all.pixels, 10000U);
+    EXPECT_EQ(all.missed + all.unlinked + all.outside + all.behind, 0U) << side;
+  }
 }
 
 TEST(SurfaceBlend, reaches_every_texel_of_a_sphere) {

@@ -46,10 +46,10 @@ inline float depth_slack(const EditingChart& chart, const Mesh& mesh, const Surf
   float steepest = 0.0F;
   for (const Vec3f& n : {plane, view.to_chart(base_normal_at(mesh, p))}) {
     const float steepness = n.head<2>().norm() / std::abs(n.z());
-    if (!(steepness < 20.0F)) return 43.0F;
+    if (!(steepness < 20.0F)) return 63.0F;
     steepest = std::max(steepest, steepness);
   }
-  return 2.0F * steepest + 3.0F;
+  return 3.0F * steepest + 3.0F;
 }
 
 /// Does a pixel around the point show it, or surface that may be the same?
@@ -57,9 +57,9 @@ inline bool shows(const EditingChart& chart, const Mesh& mesh, const SurfacePoin
   if (!(chart.grid.view.to_chart(base_normal_at(mesh, p)).z() > 0.0F)) return false;
   const Vec3f at = chart.grid.project(position_at(mesh, p));
   const float slack = chart.grid.pixel * depth_slack(chart, mesh, p);
-  for (int k = 0; k < 4; ++k) {
-    const int x = static_cast<int>(std::floor(at.x())) + k % 2;
-    const int y = static_cast<int>(std::floor(at.y())) + k / 2;
+  for (int k = 0; k < 9; ++k) {
+    const int x = static_cast<int>(std::lround(at.x())) - 1 + k % 3;
+    const int y = static_cast<int>(std::lround(at.y())) - 1 + k / 3;
     if (!chart.weight.rect().contains(x, y) || !(chart.weight(x, y) > 0.0F)) continue;
     if (std::abs(chart.ids.depth(x, y) - at.z()) < slack) return true;
   }

@@ -1,0 +1,96 @@
+#include "document/fake_assets.h"
+#include "support/chart_bijection.h"
+#include "support/data.h"
+#include "support/many_strokes.h"
+#include <gtest/gtest.h>
+
+#include "normalshop/chart/cover.h"
+#include "normalshop/chart/resolution.h"
+#include "normalshop/io/open_document.h"
+
+/// The texels of a real head, seen from all sides.
+namespace normalshop::test {
+namespace {
+
+std::optional<OpenedDocument> open_head(int size) {
+  OpenOptions options;
+  const auto model = data_file("lee_perry_smith/LeePerrySmith.glb");
+  if (!model) return std::nullopt;
+  options.model = *model;
+  options.flip_v = true;
+  options.size = size;
+  options.normal_maps = {
+      data_file("lee_perry_smith/Infinite-Level_02_Tangent_SmoothUV.jpg")->string()};
+  return open_document(options);
+}
+
+TEST(HeadViews, UpdateEveryTexelOfTheirEffectiveChartsAndNoOther) {
+  const std::optional<OpenedDocument> head = open_head(4096);
+  if (!head) GTEST_SKIP() << "the real data is not on this machine";
+  const Mesh& mesh = head->document.mesh();
+  const StorageAtlas& storage = head->document.storage();
+  CoverOptions options;
+  options.views = 20;
+  options.effective.step_falloff = 0.004F * bounds(mesh).diagonal();
+  Bijection all;
+  int views = 0;
+  for (const CoverView& cover : cover_surface(mesh, options)) {
+    if (cover.shown) continue;  // what is hidden
+    EditingChart chart;
+    const float size = std::max(cover.view.width, cover.view.height);
+    chart.grid = make_grid(cover.view, size / 600.0F, cover.low, cover.high);
+    cover.rasterize(mesh, chart.grid, chart.ids);
+    pull_attributes(mesh, storage, chart, {.normals = false, .albedo = false});
+    compute_weight(chart, options.effective);
+    all.add(edit_all(mesh, storage, chart));
+    ++views;
+  }
+  EXPECT_EQ(views, 20);
+  EXPECT_GT(all.effective, 50'000'000U);
+  EXPECT_GT(all.pixels, 2'000'000U);
+  EXPECT_EQ(all.missed, 0U);
+  EXPECT_EQ(all.unlinked, 0U);
+  EXPECT_EQ(all.outside, 0U);
+  // Surface seen almost edge-on may lie closely behind what is drawn.
+  EXPECT_LT(all.behind, all.effective / 1000);
+}
+
+TEST(HeadViews, KeepTheDetailsUnderFiftyStrokes) {
+  std::optional<OpenedDocument> head = open_head(1024);
+  if (!head) GTEST_SKIP() << "the real data is not on this machine";
+  Document& document = head->document;
+  const NormalMap before = document.storage().sets[0].normals;
+  const std::string view = R"({"facing": [1.6, -0.6, 1.6], "width": 2.4})";
+  FakeAssets assets;
+  const auto apply = [&](const ShortStroke& stroke, float sign) {
+    const std::string json = R"({"version": 1, "edits": [{)" + stroke.edit(view, sign) + "}]}";
+    document.apply(parse_recipe(json, "r.json", assets).edits.at(0));
+  };
+  const std::vector<ShortStroke> strokes = fifty_strokes(1.0F);
+  for (const ShortStroke& stroke : strokes) apply(stroke, 1.0F);
+  const NormalMap added = document.storage().sets[0].normals;
+  for (const ShortStroke& stroke : strokes) apply(stroke, -1.0F);
+  const NormalMap& after = document.storage().sets[0].normals;
+  std::size_t changed = 0;
+  std::size_t beside = 0;
+  double turned = 0.0;
+  double left = 0.0;
+  for (int y = 0; y < before.height(); ++y) {
+    for (int x = 0; x < before.width(); ++x) {
+      if (!after.edited(x, y)) {
+        beside += after.vector(x, y) == before.vector(x, y) ? 1 : 0;
+        continue;
+      }
+      ++changed;
+      turned += angle_degrees(added.normal(x, y), before.normal(x, y));
+      left += angle_degrees(after.normal(x, y), before.normal(x, y));
+    }
+  }
+  EXPECT_GT(changed, 10000U);
+  EXPECT_EQ(beside + changed, 1024U * 1024U);
+  EXPECT_GT(turned / static_cast<double>(changed), 3.0);
+  EXPECT_LE(left / static_cast<double>(changed), 0.05);
+}
+
+}  // namespace
+}  // namespace normalshop::test
