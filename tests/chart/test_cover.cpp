@@ -195,7 +195,7 @@ TEST(SurfaceBlend, gives_shared_texels_to_the_first_of_their_triangles) {
     t.head<3>() = t.x() * Vec3f(0.6F, 0, c < half ? -0.8F : 0.8F);
   }
   const StorageAtlas before = storage_of(mesh, noise_map(64, CodeType::U16));
-  const auto edited = [&](std::initializer_list<int> views, PushResult& result) {
+  const auto edited = [&](const std::vector<int>& views, PushResult& result) {
     StorageAtlas storage = before;
     SurfaceBlend blend(storage);
     for (const int view : views) {
@@ -211,7 +211,7 @@ TEST(SurfaceBlend, gives_shared_texels_to_the_first_of_their_triangles) {
   const StorageAtlas first = edited({0}, result);
   const StorageAtlas second = edited({1}, result);
   float apart = 0.0F;
-  for (const auto& views : {std::initializer_list<int>{0, 1}, {1, 0}}) {
+  for (const std::vector<int>& views : {std::vector<int>{0, 1}, std::vector<int>{1, 0}}) {
     const StorageAtlas both = edited(views, result);
     EXPECT_EQ(result.changed, 64U * 64U);
     EXPECT_EQ(result.shared, 64U * 64U);
