@@ -116,7 +116,10 @@ TEST(Cover, gives_views_whose_effective_charts_are_updated_wholly) {
     }
     EXPECT_GT(all.effective, 50000U);
     EXPECT_GT(all.pixels, 10000U);
-    EXPECT_EQ(all.missed + all.unlinked + all.outside + all.behind, 0U) << side;
+    EXPECT_EQ(all.missed, 0U) << side;
+    EXPECT_EQ(all.unlinked, 0U) << side;
+    EXPECT_EQ(all.outside, 0U) << side;
+    EXPECT_LT(all.behind, all.effective / 1000) << side;
   }
 }
 
