@@ -167,6 +167,8 @@ void PixelTriangle::load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t 
   uv = mesh.uvs[corner];
   uv1 = mesh.uvs[corner + 1] - uv;
   uv2 = mesh.uvs[corner + 2] - uv;
+  uv_dx = dx.x() * uv1 + dx.y() * uv2;
+  uv_dy = dy.x() * uv1 + dy.y() * uv2;
   texture_set = mesh.texture_sets[triangle];
   if (mesh.tangents.empty()) return;
   const Vec4f* t = &mesh.tangents[corner];

@@ -22,6 +22,8 @@ struct PixelTriangle {
   Vec2f uv = Vec2f::Zero();
   Vec2f uv1 = Vec2f::Zero();  ///< corner 1 - corner 0
   Vec2f uv2 = Vec2f::Zero();
+  Vec2f uv_dx = Vec2f::Zero();  ///< steps of uv per pixel to the right and down
+  Vec2f uv_dy = Vec2f::Zero();
   std::uint32_t texture_set = 0;
 
   void load(const Mesh& mesh, const ChartGrid& grid, std::uint32_t triangle);
@@ -36,6 +38,12 @@ struct PixelRow {
     alignas(64) Lane x{};
     alignas(64) Lane y{};
     alignas(64) Lane z{};
+    void set(int i, const Vec3f& v) {
+      const auto k = static_cast<std::size_t>(i);
+      x[k] = v.x();
+      y[k] = v.y();
+      z[k] = v.z();
+    }
   };
 
   Vectors normal;           ///< interpolated, not unit

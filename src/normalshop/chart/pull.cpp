@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "normalshop/chart/pixel_row.h"
+#include "normalshop/chart/footprint.h"
 #include "normalshop/core/normal_codes.h"
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
@@ -23,7 +23,10 @@ class Pull {
         storage_(storage),
         options_(options),
         chart_(chart),
-        triangles_(mesh, chart.grid) {}
+        triangles_(mesh, chart.grid),
+        footprints_(mesh, storage, triangles_) {
+    for (const StorageSet& set : storage.sets) sizes_.push_back(sizes_of(set, options));
+  }
 
   void fill(const Rect& rect) {
     for (int y = rect.y0 - 4; y < rect.y0; ++y) look_ahead(rect, y);
@@ -56,14 +59,23 @@ class Pull {
     std::uint32_t texture_set;
     std::uint32_t node;  ///< of object-space normals
   };
+  /// Sizes of a texture set's maps; 0 where none is read.
+  struct MapSizes {
+    Vec2f normals = Vec2f::Zero();
+    Vec2f albedo = Vec2f::Zero();
+  };
+  static MapSizes sizes_of(const StorageSet& set, const PullOptions& options);
 
   VisibleRow& visible(int y) { return visible_[static_cast<std::size_t>(y) % visible_.size()]; }
   void find_visible(int y, int x0, int count);
   void look_ahead(const Rect& rect, int y);
   void interpolate(int y, int x0, int count);
+  void note_minified(const PixelTriangle& triangle, const Visible& pixels);
   void fill_row(int y, int x0, int count);
   void clear_row(int y, int x0, int count);
   void read_maps(const Run& run);
+  void take_means(const Visible& pixels, int x0, int y);
+  void turn_stored(const Run& run);
   void find_texels_ahead(const Run& run);
   std::pair<const float*, const float*> places(const Run& run, const RawImage& codes);
   void fetch(const RawImage& codes, const Run& run) const;
@@ -84,7 +96,21 @@ class Pull {
   std::array<float, PixelRow::capacity> v_ahead_{};
   std::array<Run, PixelRow::capacity> runs_;
   std::size_t run_count_ = 0;
+  FootprintReader footprints_;
+  std::vector<MapSizes> sizes_;
+  std::array<Visible, PixelRow::capacity> minified_;
+  std::size_t minified_count_ = 0;
 };
+
+Pull::MapSizes Pull::sizes_of(const StorageSet& set, const PullOptions& options) {
+  const auto size = [](const RawImage& codes) {
+    return Vec2f(static_cast<float>(codes.width()), static_cast<float>(codes.height()));
+  };
+  MapSizes sizes;
+  if (options.means && options.normals) sizes.normals = size(set.normals.codes());
+  if (options.means && options.albedo) sizes.albedo = size(set.albedo.codes());
+  return sizes;
+}
 
 void Pull::find_visible(int y, int x0, int count) {
   const std::uint32_t* ids = chart_.ids.triangle.row(y) + x0;
@@ -118,11 +144,13 @@ void Pull::interpolate(int y, int x0, int count) {
     row_.seen[static_cast<std::size_t>(x)] = ids[x] == no_triangle ? 0.0F : 1.0F;
   }
   run_count_ = 0;
+  minified_count_ = 0;
   const VisibleRow& row = visible(y);
   for (std::size_t i = 0; i < row.count; ++i) {
     const auto& [begin, end, id] = row.runs[i];
     const PixelTriangle& triangle = triangles_.get(id);
     interpolate_run(triangle, x0, y, begin, end, row_);
+    note_minified(triangle, row.runs[i]);
     Run* last = run_count_ > 0 ? &runs_[run_count_ - 1] : nullptr;
     const std::uint32_t node = mesh_.nodes.empty() ? 0 : mesh_.nodes[id];
     if (last != nullptr && last->end == begin && last->node == node &&
@@ -132,6 +160,13 @@ void Pull::interpolate(int y, int x0, int count) {
       runs_[run_count_++] = {begin, end, triangle.texture_set, node};
     }
   }
+}
+
+void Pull::note_minified(const PixelTriangle& triangle, const Visible& pixels) {
+  if (sizes_.empty()) return;
+  const MapSizes& sizes = sizes_[triangle.texture_set];
+  if (!is_minified(triangle, sizes.normals.cwiseMax(sizes.albedo))) return;
+  minified_[minified_count_++] = pixels;
 }
 
 void Pull::clear_row(int y, int x0, int count) {
@@ -145,6 +180,8 @@ void Pull::fill_row(int y, int x0, int count) {
   finish_base_normals(count, chart_.grid.view, row_);
   std::copy_n(row_.base_normals.data(), count, chart_.base_normal.row(y) + x0);
   for (std::size_t i = 0; i < run_count_; ++i) read_maps(runs_[i]);
+  for (std::size_t i = 0; i < minified_count_; ++i) take_means(minified_[i], x0, y);
+  for (std::size_t i = 0; i < run_count_; ++i) turn_stored(runs_[i]);
   if (options_.albedo) {
     finish_colors(count, row_);
     std::copy_n(row_.colors.data(), count, chart_.albedo.row(y) + x0);
@@ -219,11 +256,28 @@ void Pull::read_maps(const Run& run) {
   const auto [u, v] = places(run, set.normals.codes());
   set.normals.sample(u, v, count, &row_.stored.x[begin], &row_.stored.y[begin],
                      &row_.stored.z[begin]);
-  const NormalSpace space = set.normals.convention().space;
+}
+
+void Pull::take_means(const Visible& pixels, int x0, int y) {
+  footprints_.begin(pixels.triangle, y);
+  const MapSizes& sizes = sizes_[footprints_.triangle().texture_set];
+  const bool normals = is_minified(footprints_.triangle(), sizes.normals);
+  const bool colors = is_minified(footprints_.triangle(), sizes.albedo);
+  Vec3f mean;
+  for (int i = pixels.begin; i < pixels.end; ++i) {
+    if (normals && footprints_.normal(x0 + i, mean)) row_.stored.set(i, mean);
+    if (colors && footprints_.color(x0 + i, mean)) row_.color.set(i, mean);
+  }
+}
+
+/// Normals that are in no tangent space go into chart axes.
+void Pull::turn_stored(const Run& run) {
+  if (!options_.normals) return;
+  const NormalSpace space = storage_.sets[run.texture_set].normals.convention().space;
   if (space == NormalSpace::Tangent) return;
   const bool in_node = space == NormalSpace::Object && !mesh_.nodes.empty();
   const Mat3f node = in_node ? mesh_.node_normals[run.node] : Mat3f(Mat3f::Identity());
-  for (std::size_t i = begin; i < static_cast<std::size_t>(run.end); ++i) {
+  for (auto i = static_cast<std::size_t>(run.begin); i < static_cast<std::size_t>(run.end); ++i) {
     const Vec3f stored(row_.stored.x[i], row_.stored.y[i], row_.stored.z[i]);
     const Vec3f n = chart_.grid.view.to_chart(node * codes::direction_of(stored)).normalized();
     row_.stored.x[i] = n.x();

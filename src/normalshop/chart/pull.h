@@ -23,10 +23,15 @@ struct EditingChart {
 struct PullOptions {
   bool normals = true;  ///< false: base normals only, for edits that don't read the details
   bool albedo = false;
+  /// Pixels that cover several texels show the mean of these instead of the one in the middle, so
+  /// that what operators read has no aliasing: the mean of slopes, or of unit vectors where the map
+  /// is not in tangent space. Pixels with up to 1.5 texels a side are the same either way.
+  bool means = true;
 };
 
 /// Looks up normals (and albedo) for every pixel of chart.ids: transfer by triangles
-/// (thesis 5.3.1), bilinear in the atlas. Needs chart.grid and chart.ids.
+/// (thesis 5.3.1), bilinear in the atlas. Needs chart.grid and chart.ids; beside the maps, `means`
+/// reads which texels belong to which triangle.
 void pull_attributes(const Mesh& mesh, const StorageAtlas& storage, EditingChart& chart,
                      const PullOptions& options = {});
 

@@ -139,6 +139,7 @@ EditingChart build_chart(const Edit& edit, const CoverView& cover, const Mesh& m
   pulled.normals = operation.picks() || ((operation.reads() || bends(edit)) && keeps) ||
                    edit.spray || transfer.update != Update::Gather;
   pulled.albedo = operation.reads_colors() && has_colors(storage);
+  pulled.means = transfer.update == Update::Gather;  // the thesis' updates write what was pulled
   if (transfer.transfer == Transfer::Point) {
     pull_points(mesh, storage, grid, pulled, chart);
   } else {
