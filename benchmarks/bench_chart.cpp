@@ -255,7 +255,8 @@ double agreement(const EditingChart& ours, const EditingChart& peer) {
 }
 
 void bench_build(const Mesh& mesh, const StorageAtlas& storage) {
-  const PullOptions options{.normals = true, .albedo = true};
+  // One look-up a pixel: the rays are compared with ours, not what is read where they end.
+  const PullOptions options{.normals = true, .albedo = true, .means = false};
   const EffectiveOptions effective;
   EditingChart ours;
   EditingChart peer;
@@ -289,6 +290,8 @@ void bench_build(const Mesh& mesh, const StorageAtlas& storage) {
   row("ids and depth, Embree", summary(trace),
       "x" + std::to_string(summary(trace).median / summary(raster).median));
   row("normals and albedo", summary(pulled));
+  row("the same, means of texels",
+      measure([&] { pull_attributes(mesh, storage, ours, {.normals = true, .albedo = true}); }));
   row("effective weight", summary(weighted));
   row("chart, ours", summary(ours_total));
   row("chart, Embree + same look-ups", summary(peer_total),

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <span>
 
 #include "normalshop/chart/pixel_row.h"
 #include "normalshop/chart/storage.h"
@@ -19,9 +19,16 @@ inline bool is_minified(const PixelTriangle& triangle, const Vec2f& size) {
          triangle.uv_dy.cwiseProduct(size).squaredNorm() > limit;
 }
 
-/// Means over the square of a pixel, by bilinear samples no further than a texel from each other
+/// Pixels of a row, side by side, that see one triangle.
+struct PixelRun {
+  int begin;
+  int end;
+  std::uint32_t triangle;
+};
+
+/// Means over the squares of pixels, by bilinear samples no further than a texel from each other
 /// (in pixels with more than `most` texels a side: that many samples a side, evenly spread). Where
-/// the square leaves the pixel's triangle, what lies there counts if it is the same chart of the
+/// a square leaves its pixel's triangle, what lies there counts if it is the same chart of the
 /// atlas going on, and nothing else: never what lies beside a chart. What is left out on one side
 /// of the pixel's middle is left out on the other, or the mean would be that of another place.
 ///
@@ -34,32 +41,60 @@ class FootprintReader {
                   TriangleCache<PixelTriangle>& triangles)
       : mesh_(mesh), storage_(storage), triangles_(triangles) {}
 
-  /// The pixels of a row that come: those of one triangle, at chart row y.
-  void begin(std::uint32_t triangle, int y);
-  const PixelTriangle& triangle() const { return triangle_; }
-  /// The mean around the chart's pixel x. False, and nothing written, where nothing counts.
-  bool normal(int x, Vec3f& mean);
-  bool color(int x, Vec3f& mean);
+  /// Rewrites the pixels of the runs that are minified, and leaves those of which nothing counts.
+  /// Pixel 0 of the row has chart coordinates (x, y).
+  void normals(std::span<const PixelRun> runs, int x, int y, PixelRow::Vectors& stored);
+  void colors(std::span<const PixelRun> runs, int x, int y, PixelRow::Vectors& color);
 
  private:
-  static constexpr std::size_t room = most * most + sample_padding;
+  struct Counts {
+    int across = 1;
+    int down = 1;
+    std::uint32_t texture_set = 0;
+    bool operator==(const Counts&) const = default;
+  };
+  using Lane = PixelRow::Lane;
 
-  void find_places(int x, const Vec2f& size);
-  std::optional<Vec2f> place_of(const Vec2f& pixel, const Vec2f& size);
-  bool goes_on(const Vec2f& uv, const Vec2f& pixel, const Vec2f& size);
+  template <class SizeOf, class Take>
+  void read(std::span<const PixelRun> runs, int x, int y, const SizeOf& size_of, const Take& take);
+  void add(const PixelRun& run, int x, int y);
+  template <class Sample>
+  void add_samples(const Counts& counts, const Vec2f& size, const Sample& sample);
+  void find_places(const Vec2f& offset, const Vec2f& size);
+  bool both_go_on(std::size_t lane, const Vec2f& offset, const Vec2f& size);
+  bool goes_on(std::size_t lane, const Vec2f& uv, const Vec2f& pixel, const Vec2f& size);
+  void keep_inside(std::uint32_t set, const Vec2f& size, Lane& u, Lane& v) const;
+  void add_slopes();
+  void add_units();
+  void add_colors();
 
   const Mesh& mesh_;
   const StorageAtlas& storage_;
   TriangleCache<PixelTriangle>& triangles_;
-  PixelTriangle triangle_;  // a copy: the cache lets go of it when others come
-  std::uint32_t id_ = 0;
-  int y_ = 0;
-  int count_ = 0;  // of places
-  alignas(64) std::array<float, room> u_{};
-  alignas(64) std::array<float, room> v_{};
-  alignas(64) std::array<float, room> a_{};
-  alignas(64) std::array<float, room> b_{};
-  alignas(64) std::array<float, room> c_{};
+
+  // Pixels that take equally many samples, as lanes.
+  int count_ = 0;
+  std::array<int, PixelRow::capacity> pixel_{};  // in the row
+  std::array<std::uint32_t, PixelRow::capacity> id_{};
+  std::uint32_t set_ = 0;
+  float x_ = 0.0F;  // chart coordinates of the row
+  float y_ = 0.0F;
+  // At the middle of the pixel, and their steps to the right and down.
+  struct Affine {
+    alignas(64) Lane at{};
+    alignas(64) Lane dx{};
+    alignas(64) Lane dy{};
+  };
+  Affine u_, v_, b1_, b2_;
+  // Two places, opposite of each other; 1 where they count.
+  alignas(64) Lane u0_{};
+  alignas(64) Lane v0_{};
+  alignas(64) Lane u1_{};
+  alignas(64) Lane v1_{};
+  alignas(64) Lane counts_{};
+  PixelRow::Vectors sample_;
+  PixelRow::Vectors sum_;
+  alignas(64) Lane total_{};
 };
 
 }  // namespace normalshop

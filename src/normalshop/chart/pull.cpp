@@ -42,14 +42,8 @@ class Pull {
   }
 
  private:
-  /// Pixels side by side that see one triangle.
-  struct Visible {
-    int begin;
-    int end;
-    std::uint32_t triangle;
-  };
   struct VisibleRow {
-    std::array<Visible, PixelRow::capacity> runs;
+    std::array<PixelRun, PixelRow::capacity> runs;
     std::size_t count = 0;
   };
   /// Pixels side by side that read one texture set.
@@ -70,11 +64,10 @@ class Pull {
   void find_visible(int y, int x0, int count);
   void look_ahead(const Rect& rect, int y);
   void interpolate(int y, int x0, int count);
-  void note_minified(const PixelTriangle& triangle, const Visible& pixels);
+  void note_minified(const PixelTriangle& triangle, const PixelRun& pixels);
   void fill_row(int y, int x0, int count);
   void clear_row(int y, int x0, int count);
   void read_maps(const Run& run);
-  void take_means(const Visible& pixels, int x0, int y);
   void turn_stored(const Run& run);
   void find_texels_ahead(const Run& run);
   std::pair<const float*, const float*> places(const Run& run, const RawImage& codes);
@@ -98,7 +91,7 @@ class Pull {
   std::size_t run_count_ = 0;
   FootprintReader footprints_;
   std::vector<MapSizes> sizes_;
-  std::array<Visible, PixelRow::capacity> minified_;
+  std::array<PixelRun, PixelRow::capacity> minified_;
   std::size_t minified_count_ = 0;
 };
 
@@ -162,7 +155,7 @@ void Pull::interpolate(int y, int x0, int count) {
   }
 }
 
-void Pull::note_minified(const PixelTriangle& triangle, const Visible& pixels) {
+void Pull::note_minified(const PixelTriangle& triangle, const PixelRun& pixels) {
   if (sizes_.empty()) return;
   const MapSizes& sizes = sizes_[triangle.texture_set];
   if (!is_minified(triangle, sizes.normals.cwiseMax(sizes.albedo))) return;
@@ -180,7 +173,9 @@ void Pull::fill_row(int y, int x0, int count) {
   finish_base_normals(count, chart_.grid.view, row_);
   std::copy_n(row_.base_normals.data(), count, chart_.base_normal.row(y) + x0);
   for (std::size_t i = 0; i < run_count_; ++i) read_maps(runs_[i]);
-  for (std::size_t i = 0; i < minified_count_; ++i) take_means(minified_[i], x0, y);
+  const std::span<const PixelRun> minified(minified_.data(), minified_count_);
+  if (options_.normals) footprints_.normals(minified, x0, y, row_.stored);
+  if (options_.albedo) footprints_.colors(minified, x0, y, row_.color);
   for (std::size_t i = 0; i < run_count_; ++i) turn_stored(runs_[i]);
   if (options_.albedo) {
     finish_colors(count, row_);
@@ -256,18 +251,6 @@ void Pull::read_maps(const Run& run) {
   const auto [u, v] = places(run, set.normals.codes());
   set.normals.sample(u, v, count, &row_.stored.x[begin], &row_.stored.y[begin],
                      &row_.stored.z[begin]);
-}
-
-void Pull::take_means(const Visible& pixels, int x0, int y) {
-  footprints_.begin(pixels.triangle, y);
-  const MapSizes& sizes = sizes_[footprints_.triangle().texture_set];
-  const bool normals = is_minified(footprints_.triangle(), sizes.normals);
-  const bool colors = is_minified(footprints_.triangle(), sizes.albedo);
-  Vec3f mean;
-  for (int i = pixels.begin; i < pixels.end; ++i) {
-    if (normals && footprints_.normal(x0 + i, mean)) row_.stored.set(i, mean);
-    if (colors && footprints_.color(x0 + i, mean)) row_.color.set(i, mean);
-  }
 }
 
 /// Normals that are in no tangent space go into chart axes.
