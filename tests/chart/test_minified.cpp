@@ -2,6 +2,7 @@
 
 #include "chart_fixtures.h"
 #include "support/meshes.h"
+#include "support/nan.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/for_pixels.h"
@@ -74,8 +75,8 @@ TEST(Minified, triangles_may_be_smaller_than_pixels) {
   EXPECT_LT(aliasing(mesh, storage, true), 0.05);
 }
 
-/// Mean degrees between a hemisphere's base normals and what a chart with pixels of 2.4 texels shows
-/// of waves about as long as a pixel.
+/// Mean degrees between a hemisphere's base normals and what a chart with pixels of 2.4 texels
+/// shows of waves about as long as a pixel.
 double turned_by_fine_waves(NormalSpace space, bool means) {
   const Mesh mesh = hemisphere(24, 48);
   const StorageAtlas storage = storage_of(mesh, 256, space, [](const Vec3f& p) {
@@ -163,6 +164,39 @@ TEST(Minified, colours_are_means_of_light) {
   const ChartGrid grid = make_grid(view, 1.0F / 24);
   const EditingChart chart = pull(mesh, storage, grid, {.albedo = true});
   for (int x = 0; x < 24; ++x) EXPECT_NEAR(chart.albedo(x, 12).y(), 0.5F, 1e-3F);
+}
+
+/// A map repeated a thousand times with texels that are no numbers, on slivers too.
+TEST(Minified, slivers_and_broken_codes_give_numbers) {
+  const auto corner = [](float x, float y, float scale) {
+    return MeshBuilder::Corner{{x, y, 0.0F}, {0, 0, 1}, {scale * x, scale * y}};
+  };
+  MeshBuilder builder;
+  builder.quad(corner(0, 0, 1000), corner(1, 0, 1000), corner(1, 1, 1000), corner(0, 1, 1000));
+  for (const float thin : {1e-3F, 1e-20F, 1e-38F}) {
+    MeshBuilder::Corner off = corner(1.5F, 1.0F, 1e6F);
+    off.position.y() = thin;
+    builder.triangle(corner(1, 0, 1), corner(2, 0, 1e8F), off);
+  }
+  const Mesh mesh = builder.finish();
+  RawImage codes(64, 64, 3, CodeType::F32);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const bool broken = (x + y) % 5 == 0;
+      Eigen::Map<Vec3f>(codes.row<float>(y) + 3 * x) =
+          broken ? Vec3f::Constant(test::nan) : Vec3f(0.2F, 0.1F, 0.9F);
+    }
+  }
+  NormalConvention convention;
+  convention.signed_float = true;
+  const StorageAtlas storage = storage_of(mesh, NormalMap(std::move(codes), convention));
+  const View view = make_view({0, 0, 1}, {0, 1, 0}, {1.0F, 0.5F, 0.0F}, 2.0F, 1.2F);
+  const EditingChart chart = pull(mesh, storage, make_grid(view, 0.02F));
+  for (int y = 0; y < chart.grid.height(); ++y) {
+    for (int x = 0; x < chart.grid.width(); ++x) {
+      ASSERT_TRUE(chart.normal(x, y).allFinite()) << x << ", " << y;
+    }
+  }
 }
 
 TEST(Minified, threads_change_nothing) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -12,11 +13,14 @@ namespace normalshop {
 /// Texels along a pixel's side up to which one bilinear sample shows all of them.
 inline constexpr float fine_texels = 1.5F;
 
-/// Do the pixels of a triangle cover more than fine_texels of a map of that size along a side?
+/// Do the pixels of a triangle cover more than fine_texels of a map of that size along a side? Not
+/// those of triangles so thin that steps from pixel to pixel are no numbers.
 inline bool is_minified(const PixelTriangle& triangle, const Vec2f& size) {
   constexpr float limit = fine_texels * fine_texels;
-  return triangle.uv_dx.cwiseProduct(size).squaredNorm() > limit ||
-         triangle.uv_dy.cwiseProduct(size).squaredNorm() > limit;
+  constexpr float countless = 1e12F;
+  const float across = triangle.uv_dx.cwiseProduct(size).squaredNorm();
+  const float down = triangle.uv_dy.cwiseProduct(size).squaredNorm();
+  return std::max(across, down) > limit && across + down < countless;
 }
 
 /// Pixels of a row, side by side, that see one triangle.
