@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "normalshop/core/parallel.h"
 #include "normalshop/core/sample.h"
@@ -72,6 +73,23 @@ void ColorMap::begin_edits() {
     return static_cast<std::uint16_t>(code * code_step);
   });
   to_linear_ = linear_table(CodeType::U16);
+}
+
+void ColorMap::write_codes(const Rect& region, const std::uint8_t* codes) {
+  const auto pixel =
+      static_cast<std::size_t>(codes_.channels() * RawImage::code_size(codes_.type()));
+  const std::size_t row = static_cast<std::size_t>(region.width()) * pixel;
+  for (int y = region.y0; y < region.y1; ++y, codes += row) {
+    std::memcpy(codes_.row_data(y) + static_cast<std::size_t>(region.x0) * pixel, codes, row);
+  }
+  edited_ = true;
+}
+
+void ColorMap::end_edits() {
+  edited_ = false;
+  if (codes_.type() == type_) return;
+  codes_ = encode();
+  to_linear_ = linear_table(type_);
 }
 
 RawImage ColorMap::encode() const {

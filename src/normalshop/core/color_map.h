@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "normalshop/core/raw_image.h"
+#include "normalshop/core/rect.h"
 
 namespace normalshop {
 
@@ -31,6 +32,11 @@ class ColorMap {
   /// code changes, or the sum is no number. Different texels may be edited at once.
   bool add(int x, int y, const Vec3f& change);
   bool has_edits() const { return edited_; }
+  /// Codes of a rectangle, rows of the type that begin_edits() leaves, become these: an edit.
+  void write_codes(const Rect& region, const std::uint8_t* codes);
+  /// There are no edits any more: whoever calls this has written back the codes that came. They are
+  /// kept as they came from here on.
+  void end_edits();
   /// In the type of the codes that came; texels without edit have theirs.
   RawImage encode() const;
 

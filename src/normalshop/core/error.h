@@ -24,6 +24,12 @@ class IoError : public Error {
   using Error::Error;
 };
 
+/// A document's file cannot be used: damaged, of another kind, too new, or open elsewhere.
+class DocumentError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The user cancelled; nothing has changed.
 class Cancelled : public Error {
  public:

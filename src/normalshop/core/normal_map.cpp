@@ -53,12 +53,12 @@ std::shared_ptr<NormalMap::Tile> NormalMap::own_tile(const Tile* shared) {
   return shared == nullptr ? std::make_shared<Tile>() : std::make_shared<Tile>(*shared);
 }
 
-const NormalMap::Tile* NormalMap::tile(int x, int y) const {
+const NormalMap::Tile* NormalMap::tile_of(int x, int y) const {
   return tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)].get();
 }
 
 Vec3f NormalMap::vector(int x, int y) const {
-  const Tile* t = tile(x, y);
+  const Tile* t = tile_of(x, y);
   if (t != nullptr && t->edited[index_in_tile(x, y)]) return t->normals[index_in_tile(x, y)];
   return codes::decode_texel(*codes_, convention_, range_, x, y);
 }
@@ -70,7 +70,7 @@ void NormalMap::read_vectors(int x, int count, int y, Vec3f* vectors) const {
   const int end = x + count;
   while (x < end) {
     const int next = std::min(end, (x / tile_size + 1) * tile_size);
-    const Tile* t = tile(x, y);
+    const Tile* t = tile_of(x, y);
     for (std::size_t i = index_in_tile(x, y); x < next; ++x, ++i, ++vectors) {
       if (t != nullptr && t->edited[i]) *vectors = t->normals[i];
     }
@@ -85,7 +85,7 @@ void NormalMap::read_normals(int y, Vec3f* normals) const {
 Vec3f NormalMap::sample(const Vec2f& uv) const {
   const WrappedTaps tap(uv, width(), height());
   const bool one_tile = (tap.x0 ^ tap.x1) < tile_size && (tap.y0 ^ tap.y1) < tile_size;
-  const bool plain = one_tile && tile(tap.x0, tap.y0) == nullptr && !convention_.two_channel;
+  const bool plain = one_tile && tile_of(tap.x0, tap.y0) == nullptr && !convention_.two_channel;
   if (plain && codes_->type() == CodeType::U8) return sample_codes<std::uint8_t>(tap);
   if (plain && codes_->type() == CodeType::U16) return sample_codes<std::uint16_t>(tap);
   const Vec3f upper = vector(tap.x0, tap.y0) * (1.0F - tap.fx) + vector(tap.x1, tap.y0) * tap.fx;
@@ -159,7 +159,7 @@ void NormalMap::sample(const float* u, const float* v, int count, float* x, floa
 
 bool NormalMap::restore(int x, int y, const NormalMap& earlier) {
   auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
-  const Tile* was = earlier.tile(x, y);
+  const Tile* was = earlier.tile_of(x, y);
   const std::size_t i = index_in_tile(x, y);
   const bool was_edited = was != nullptr && was->edited[i];
   assert(t || was == nullptr);
@@ -171,7 +171,7 @@ bool NormalMap::restore(int x, int y, const NormalMap& earlier) {
 }
 
 bool NormalMap::edited(int x, int y) const {
-  const Tile* t = tile(x, y);
+  const Tile* t = tile_of(x, y);
   return t != nullptr && t->edited[index_in_tile(x, y)];
 }
 
@@ -192,7 +192,7 @@ std::size_t NormalMap::edited_count() const {
 
 void NormalMap::encode_edits(int y, RawImage& out, int out_y) const {
   for (int x = 0; x < width(); x += tile_size) {
-    const Tile* t = tile(x, y);
+    const Tile* t = tile_of(x, y);
     if (t == nullptr) continue;
     const std::size_t begin = index_in_tile(x, y);
     const int count = std::min(tile_size, width() - x);

@@ -54,6 +54,12 @@ class NormalMap {
     return static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
   }
 
+  /// Of texels that are not edited the normals mean nothing.
+  struct Tile {
+    std::array<Vec3f, tile_size * tile_size> normals;
+    std::bitset<tile_size * tile_size> edited;
+  };
+
   NormalMap() = default;
   /// Codes with 2 to 4 channels (3 to 4 unless two_channel). Throws InvalidInput otherwise.
   NormalMap(RawImage codes, const NormalConvention& convention);
@@ -94,6 +100,12 @@ class NormalMap {
     t->edited[index_in_tile(x, y)] = true;
   }
 
+  /// Tiles count in rows from the top left.
+  std::size_t tile_count() const { return tiles_.size(); }
+  /// Null where nothing was ever edited. While somebody holds it, edits go to a copy.
+  std::shared_ptr<const Tile> tile(std::size_t index) const { return tiles_[index]; }
+  void set_tile(std::size_t index, std::shared_ptr<Tile> tile) { tiles_[index] = std::move(tile); }
+
   /// Makes the texel what it was in an earlier copy of this map. False where it cannot be anything
   /// else. Threads as in set_normal().
   bool restore(int x, int y, const NormalMap& earlier);
@@ -109,16 +121,12 @@ class NormalMap {
   RawImage encode() const { return encode(codes_->type(), convention_); }
 
  private:
-  struct Tile {
-    std::array<Vec3f, tile_size * tile_size> normals;
-    std::bitset<tile_size * tile_size> edited;
-  };
   static std::shared_ptr<Tile> own_tile(const Tile* shared);
   Vec3f with_coded_length(const Vec3f& n) const;
   void encode_edits(int y, RawImage& out, int out_y) const;
   template <class Code>
   Vec3f sample_codes(const WrappedTaps& tap) const;
-  const Tile* tile(int x, int y) const;
+  const Tile* tile_of(int x, int y) const;
   bool may_read_edits(const float* u, const float* v, int count) const;
 
   static const std::shared_ptr<const RawImage>& no_codes();

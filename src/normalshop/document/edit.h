@@ -95,6 +95,7 @@ struct Edit {
   std::vector<SurfaceStroke> surface_strokes;  ///< of a SurfaceView alone, instead of strokes
   std::optional<SurfacePart> part;             ///< of a SurfaceView alone; none: all of it
   std::optional<MirrorPlane> mirror;           ///< makes the edit's mirror image, too
+  std::vector<NamedFile> files;                ///< that the operator has loaded
   std::string path;  ///< where it was read from, for messages: "scar.json: edits[0]"
 };
 

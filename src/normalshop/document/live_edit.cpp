@@ -47,7 +47,9 @@ struct LiveEdit::State {
         open(open_facing(edit, view, owner)),
         result(empty_result(open.chart.grid.width(), open.chart.grid.height())),
         push(owner.mesh(), owner.storage(), open.chart, open.direction, result.change,
-             open.source.replaces ? result.coverage.view() : MaskView()) {}
+             open.source.replaces ? result.coverage.view() : MaskView()) {
+    if (owner.file()) before.emplace(owner.storage(), edit.operation->moves_colors());
+  }
 
   Document& document;
   Edit edit;
@@ -55,6 +57,7 @@ struct LiveEdit::State {
   OpenChart open;
   OperatorResult result;
   LivePush push;
+  std::optional<MapsBefore> before;  // of a document on file
 };
 
 LiveEdit::LiveEdit(Document& document, Edit edit)
@@ -133,7 +136,7 @@ const std::vector<MapTile>& LiveEdit::draw(std::vector<UnitStroke> strokes) {
 
 /// What apply() does after its push. Whatever can fail for want of memory comes first.
 EditReport LiveEdit::complete() {
-  const State& state = *state_;
+  State& state = *state_;
   const OpenChart& open = state.open;
   Document& document = state.document;
   Stopwatch watch;
@@ -158,6 +161,7 @@ EditReport LiveEdit::complete() {
             .changed;
   }
   report.times.push += watch.lap();
+  document.record(std::move(state.edit), report, state.before ? &*state.before : nullptr);
   return report;
 }
 
@@ -178,7 +182,6 @@ EditReport LiveEdit::finish() {
     cancel();
     throw;
   }
-  document.log_.push_back(std::move(state.edit));
   document.live_ = false;
   state_.reset();
   return report;

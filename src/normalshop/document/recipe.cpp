@@ -210,6 +210,7 @@ Edit read_edit(const FieldReader& reader, Assets& assets) {
   Edit edit;
   edit.path = reader.path();
   edit.operation = read_operator(reader, assets);
+  edit.files = assets.take_files();
   edit.view = read_view(reader.required("view"));
   // Several views have no direction in common.
   if (std::holds_alternative<SurfaceView>(edit.view)) edit.mode = EditMode::Base;
