@@ -110,7 +110,7 @@ std::string with_flags(std::string message) {
 }
 
 Recipe read_recipe(const OperatorFlags& flags) {
-  FileAssets assets({});
+  FileAssets assets{std::filesystem::path()};
   try {
     return {{read_edit(edit_value(flags), "edit", assets)}};
   } catch (const InvalidInput& error) {

@@ -16,13 +16,29 @@ namespace normalshop {
 namespace {
 
 constexpr int largest_patch = 8192;
+constexpr std::size_t largest_file = std::size_t{1} << 34U;
 constexpr std::size_t largest_kernel = std::size_t{1} << 23U;  // 255 x 255 long numbers fit
 
 }  // namespace
 
+const std::string& FileAssets::read(const std::string& name, const std::filesystem::path& path,
+                                    std::size_t largest) {
+  if (!given_) {
+    read_.push_back({name, std::make_shared<const std::string>(read_file(path, largest))});
+    return *read_.back().bytes;
+  }
+  for (const NamedFile& file : *given_) {
+    if (file.name != name) continue;
+    read_.push_back(file);
+    return *file.bytes;
+  }
+  throw IoError("the document does not hold '" + name + "'");
+}
+
 Patch FileAssets::patch(const std::string& file) {
   const std::filesystem::path path = folder_ / file;
-  RawImage codes = read_image(path);
+  RawImage codes =
+      read_image(std::as_bytes(std::span(read(file, path, largest_file))), path.string());
   if (codes.width() > largest_patch || codes.height() > largest_patch) {
     throw InvalidInput(path.string() + ": a patch may have at most 8192 x 8192 pixels");
   }
@@ -53,14 +69,15 @@ Patch FileAssets::patch(const std::string& file) {
 
 Image<float> FileAssets::kernel(const std::string& file) {
   const std::filesystem::path path = folder_ / file;
-  return parse_kernel(read_file(path, largest_kernel), path.string());
+  return parse_kernel(read(file, path, largest_kernel), path.string());
 }
 
 Outline FileAssets::text(const std::string& text, const std::string& font) {
   // A name with a folder or an extension is a file; else the system's fonts are searched.
   const std::filesystem::path name(font);
   const bool is_file = name.has_parent_path() || name.has_extension();
-  return text_outlines(text, is_file ? folder_ / name : name);
+  const std::filesystem::path file = given_ ? name : is_file ? folder_ / name : font_file(name);
+  return text_outlines(text, read(font, file, largest_file), file.string());
 }
 
 }  // namespace normalshop

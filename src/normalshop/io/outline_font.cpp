@@ -62,35 +62,20 @@ std::optional<fs::path> find_in(const fs::path& folder, const std::string& name)
   return best;
 }
 
-fs::path font_file(const fs::path& font) {
-  fs::path wanted = font.empty() ? fs::path(default_font) : font;
-  std::error_code error;
-  if (fs::is_regular_file(wanted, error)) return wanted;
-  if (!wanted.has_parent_path() && !wanted.has_extension()) {
-    fs::path usual = "/usr/share/fonts/truetype/dejavu/" + wanted.string() + ".ttf";
-    if (fs::is_regular_file(usual, error)) return usual;
-    for (const char* folder : {"/usr/share/fonts", "/usr/local/share/fonts"}) {
-      if (const auto found = find_in(folder, wanted.string())) return *found;
-    }
-  }
-  throw IoError("there is no font '" + wanted.string() +
-                "'; give a .ttf or .otf file, or a name like " + std::string(default_font) +
-                " (Debian: apt install fonts-dejavu-core)");
-}
-
 class Font {
  public:
-  explicit Font(const fs::path& path) : bytes_(read_file(path)) {
+  /// The bytes must live as long.
+  Font(std::string_view bytes, const std::string& path) {
     if (FT_Init_FreeType(&library_) != 0) throw IoError("the font library cannot start");
-    const auto* data = reinterpret_cast<const FT_Byte*>(bytes_.data());
-    const auto size = static_cast<FT_Long>(bytes_.size());
+    const auto* data = reinterpret_cast<const FT_Byte*>(bytes.data());
+    const auto size = static_cast<FT_Long>(bytes.size());
     if (FT_New_Memory_Face(library_, data, size, 0, &face_) != 0) {
       FT_Done_FreeType(library_);
-      throw InvalidInput("'" + path.string() + "' is no font file; accepted are .ttf and .otf");
+      throw InvalidInput("'" + path + "' is no font file; accepted are .ttf and .otf");
     }
     if (!FT_IS_SCALABLE(face_)) {
       close();
-      throw InvalidInput("the font '" + path.string() + "' has no outlines");
+      throw InvalidInput("the font '" + path + "' has no outlines");
     }
     em_ = static_cast<float>(std::max<int>(face_->units_per_EM, 1));
   }
@@ -115,7 +100,6 @@ class Font {
     FT_Done_Face(face_);
     FT_Done_FreeType(library_);
   }
-  std::string bytes_;
   FT_Library library_ = nullptr;
   FT_Face face_ = nullptr;
   float em_ = 1.0F;
@@ -219,7 +203,29 @@ float add_line(const Font& font, const std::vector<char32_t>& line, float y, Out
 
 }  // namespace
 
-std::vector<std::vector<Vec2f>> text_outlines(std::string_view utf8, const fs::path& font_name) {
+fs::path font_file(const fs::path& font) {
+  fs::path wanted = font.empty() ? fs::path(default_font) : font;
+  std::error_code error;
+  if (fs::is_regular_file(wanted, error)) return wanted;
+  if (!wanted.has_parent_path() && !wanted.has_extension()) {
+    fs::path usual = "/usr/share/fonts/truetype/dejavu/" + wanted.string() + ".ttf";
+    if (fs::is_regular_file(usual, error)) return usual;
+    for (const char* folder : {"/usr/share/fonts", "/usr/local/share/fonts"}) {
+      if (const auto found = find_in(folder, wanted.string())) return *found;
+    }
+  }
+  throw IoError("there is no font '" + wanted.string() +
+                "'; give a .ttf or .otf file, or a name like " + std::string(default_font) +
+                " (Debian: apt install fonts-dejavu-core)");
+}
+
+std::vector<std::vector<Vec2f>> text_outlines(std::string_view utf8, const fs::path& font) {
+  const fs::path file = font_file(font);
+  return text_outlines(utf8, read_file(file), file.string());
+}
+
+std::vector<std::vector<Vec2f>> text_outlines(std::string_view utf8, std::string_view font_bytes,
+                                              const std::string& name) {
   std::vector<std::vector<char32_t>> lines(1);
   for (const char32_t point : decode_utf8(utf8)) {
     if (point == U'\n') {
@@ -228,7 +234,7 @@ std::vector<std::vector<Vec2f>> text_outlines(std::string_view utf8, const fs::p
       lines.back().push_back(point);
     }
   }
-  const Font font(font_file(font_name));
+  const Font font(font_bytes, name);
   const float step = static_cast<float>(font.face()->height) / font.em();
   const float block = step * static_cast<float>(lines.size() - 1);
   float y = 0.5F * block - 0.5F * font.cap_height();

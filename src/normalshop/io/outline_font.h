@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,5 +22,10 @@ inline constexpr std::string_view default_font = "DejaVuSans-Bold";
 /// for default_font. Throws IoError (no such font), InvalidInput (no UTF-8, no outlines).
 std::vector<std::vector<Vec2f>> text_outlines(std::string_view utf8,
                                               const std::filesystem::path& font = {});
+/// The file that a font's name means. Throws IoError.
+std::filesystem::path font_file(const std::filesystem::path& font);
+/// The same of a font's bytes; `name` stands for it in messages.
+std::vector<std::vector<Vec2f>> text_outlines(std::string_view utf8, std::string_view font_bytes,
+                                              const std::string& name);
 
 }  // namespace normalshop
