@@ -23,7 +23,7 @@ fs::path folder_of(const fs::path& file) {
 
 Companions::Companions(const ModelSource& source, const fs::path& model_path,
                        const std::map<std::size_t, MapReferences>& maps)
-    : source_folder_(source.folder), folder_(folder_of(model_path)) {
+    : source_folder_(source.folder), files_(source.files), folder_(folder_of(model_path)) {
   for (const auto& [set, reference] : maps) {
     for (const std::string& file : {reference.normal, reference.color}) {
       if (!file.empty()) reserved_.push_back((folder_ / file).lexically_normal());
@@ -75,9 +75,8 @@ std::string Companions::copy_tiles(const std::string& reference) {
   std::string pattern = place(reference);
   if (reserved(folder_ / pattern)) return pattern;
   for (int tile = first_tile_number; tile <= last_tile_number; ++tile) {
-    std::error_code error;
     const std::string name = tile_path(reference, tile).generic_string();
-    if (fs::is_regular_file(source_folder_ / name, error)) copy(name);
+    if (files_->has(source_folder_ / name)) copy(name);
   }
   return pattern;
 }
@@ -94,12 +93,12 @@ std::string Companions::copy(const std::string& reference) {
   const fs::path target = folder_ / name;
   std::error_code error;
   if (name.empty() || reserved(target) || fs::equivalent(from, target, error)) return name;
-  if (!fs::is_regular_file(from, error)) {
+  if (!files_->has(from)) {
     result.notes.push_back("'" + from.string() +
                            "' is missing, so it is not copied beside the model");
     return name;
   }
-  put(name, read_file(from));
+  put(name, files_->read(from));
   return name;
 }
 

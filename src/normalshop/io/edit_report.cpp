@@ -85,13 +85,7 @@ void apply_all(EditJob& job, const Recipe& recipe, StageClock& clock) {
   clock.start("edits");
   for (const Edit& edit : recipe.edits) {
     job.edits.push_back(document.apply(edit, job.transfer));
-    note_relief(edit, job.edits.back().relief, job.notes);
-    note_shared(edit, job.edits.back().pushed, job.notes);
-    if (job.edits.back().coarser_than_texels) {
-      job.notes.push_back(edit.path +
-                          ": covers more texels than an editing chart has pixels, so it "
-                          "comes out softer than the map could show; edit from nearer");
-    }
+    note_edit(edit, job.edits.back(), job.notes);
   }
   clock.start("seams");
   const std::vector<float> after = seam_angles(document.mesh(), samples, maps);
@@ -129,6 +123,16 @@ Value sets_value(const EditJob& job) {
 }
 
 }  // namespace
+
+void note_edit(const Edit& edit, const EditReport& report, std::vector<std::string>& notes) {
+  note_relief(edit, report.relief, notes);
+  note_shared(edit, report.pushed, notes);
+  if (report.coarser_than_texels) {
+    notes.push_back(edit.path +
+                    ": covers more texels than an editing chart has pixels, so it "
+                    "comes out softer than the map could show; edit from nearer");
+  }
+}
 
 Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports) {
   Value::Array out;

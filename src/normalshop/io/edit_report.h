@@ -32,6 +32,9 @@ EditJob run_edit_job(const OpenOptions& open, const Recipe& recipe,
                      const std::filesystem::path& folder, const ExportOptions& options,
                      const TransferOptions& transfer = {});
 
+/// Adds what the user should know of an edit.
+void note_edit(const Edit& edit, const EditReport& report, std::vector<std::string>& notes);
+
 /// What each edit of a log did, for reports.
 Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports);
 

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "normalshop/core/error.h"
-#include "normalshop/io/atomic_file.h"
 #include "normalshop/io/detail/uri.h"
 
 namespace normalshop::gltf {
@@ -48,7 +47,7 @@ void split_chunks(File& file, std::span<const std::byte> bytes, std::string& bin
 }
 
 std::string load_buffer(const File& file, const Json& buffer, const std::string& where,
-                        std::string& binary) {
+                        std::string& binary, const FileSource& files) {
   const std::string uri = string_at(buffer, "uri");
   if (uri.empty()) {
     if (file.binary && where == "buffers[0]") return std::move(binary);
@@ -60,15 +59,15 @@ std::string load_buffer(const File& file, const Json& buffer, const std::string&
     return std::move(data->bytes);
   }
   if (has_scheme(uri)) fail(file, where + ".uri is '" + uri + "'; accepted are files beside it");
-  return read_file(file.folder / percent_decoded(uri));
+  return files.read(file.folder / percent_decoded(uri));
 }
 
-void load_buffers(File& file, std::string& binary) {
+void load_buffers(File& file, std::string& binary, const FileSource& files) {
   const Json& buffers = array_at(file, file.json, "buffers");
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const std::string where = "buffers[" + std::to_string(i) + "]";
     const std::int64_t length = index_at(file, buffers[i], "byteLength", where, 0);
-    file.buffers.push_back(load_buffer(file, buffers[i], where, binary));
+    file.buffers.push_back(load_buffer(file, buffers[i], where, binary, files));
     if (file.buffers.back().size() < static_cast<std::size_t>(length)) {
       fail(file, where + " should have " + std::to_string(length) + " bytes and has " +
                      std::to_string(file.buffers.back().size()));
@@ -112,7 +111,8 @@ Json parse_json(const std::string& text, const std::string& name) {
   return json;
 }
 
-File parse(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+File parse(std::span<const std::byte> bytes, const std::filesystem::path& path,
+           const FileSource& files) {
   File file;
   file.name = path.string();
   file.folder = path.parent_path();
@@ -128,7 +128,7 @@ File parse(std::span<const std::byte> bytes, const std::filesystem::path& path) 
   if (!version.starts_with("2.")) {
     fail(file, "asset.version is '" + version.substr(0, 20) + "'; accepted is glTF 2.x");
   }
-  load_buffers(file, binary);
+  load_buffers(file, binary, files);
   return file;
 }
 

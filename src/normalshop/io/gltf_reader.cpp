@@ -411,7 +411,7 @@ class Reader {
 
 Model parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path,
                  const ModelReadOptions& options) {
-  File file = gltf::parse(bytes, path);
+  File file = gltf::parse(bytes, path, *options.files);
   Model model;
   model.path = path;
   Reader reader(file, options, model);
@@ -419,6 +419,7 @@ Model parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
   auto source = std::make_shared<ModelSource>();
   source->format = file.binary ? ModelFormat::Glb : ModelFormat::Gltf;
   source->folder = file.folder;
+  source->files = options.files;
   source->text = std::move(file.text);
   source->buffers = std::move(file.buffers);
   source->flip_v = options.flip_v;

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "normalshop/core/error.h"
-#include "normalshop/io/atomic_file.h"
 #include "normalshop/io/detail/extension.h"
 #include "normalshop/io/detail/model_source.h"
 #include "normalshop/surface/vertex_normals.h"
@@ -68,7 +67,7 @@ Model read_model(const fs::path& path, const ModelReadOptions& options) {
     throw InvalidInput("'" + path.string() + "' is no model of a known kind; accepted are .gltf, " +
                        ".glb and .obj");
   }
-  const std::string text = read_file(path);
+  const std::string text = options.files->read(path);
   const auto bytes = std::as_bytes(std::span(text));
   return extension == ".obj" ? parse_obj(bytes, path, options) : parse_gltf(bytes, path, options);
 }

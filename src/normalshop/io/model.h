@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "normalshop/core/vec.h"
+#include "normalshop/io/file_source.h"
 #include "normalshop/surface/mesh.h"
 
 /// Model files: glTF 2.0 (.gltf, .glb) and Wavefront OBJ with MTL.
@@ -58,6 +59,8 @@ struct ModelReadOptions {
   bool keep_without_uvs = false;
   /// A file with more is refused.
   std::size_t max_triangles = std::size_t{1} << 27;
+  /// Holds the model, and what that refers to.
+  std::shared_ptr<const FileSource> files = disk_files();
 };
 
 /// Does the extension tell a model: .gltf, .glb or .obj?

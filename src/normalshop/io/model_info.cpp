@@ -100,6 +100,7 @@ Value model_info(const std::filesystem::path& file, const ModelReadOptions& read
 }  // namespace
 
 Value file_info(const std::filesystem::path& file, const ModelReadOptions& reading) {
+  if (DocumentFile::is_one(file)) return DocumentFile(file).summary();
   return is_model_file(file) ? model_info(file, reading) : image_info(file);
 }
 

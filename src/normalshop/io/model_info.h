@@ -8,7 +8,7 @@
 namespace normalshop {
 
 /// What a model (meshes, texture sets, charts, seams, overlaps, texel density, guessed conventions)
-/// or an image is, for people and programs. Throws IoError or InvalidInput.
+/// an image or a document is, for people and programs. Throws IoError or InvalidInput.
 Value file_info(const std::filesystem::path& file, const ModelReadOptions& reading = {});
 
 }  // namespace normalshop

@@ -7,7 +7,6 @@
 #include <tiny_obj_loader.h>
 
 #include "normalshop/core/error.h"
-#include "normalshop/io/atomic_file.h"
 #include "normalshop/io/conventions.h"
 #include "normalshop/io/detail/model_source.h"
 #include "normalshop/io/detail/obj_text.h"
@@ -210,7 +209,7 @@ class ObjReader {
   void read_libraries() {
     for (const std::string& name : obj_libraries(source_)) {
       try {
-        std::istringstream stream(read_file(source_.folder / name));
+        std::istringstream stream(source_.files->read(source_.folder / name));
         std::map<std::string, int> by_name;
         std::string warning;
         std::string error;
@@ -251,10 +250,12 @@ class ObjReader {
     auto source = map_source(material.bump_texname, library);
     if (!source) return std::nullopt;
     try {
-      const std::filesystem::path seen = names_tiles(source->path)
-                                             ? first_tile(source->path).value_or(source->path)
-                                             : source->path;
-      if (looks_like_normal_map(read_image(seen))) {
+      const std::filesystem::path seen =
+          names_tiles(source->path)
+              ? first_tile(source->path, *source_.files).value_or(source->path)
+              : source->path;
+      const std::string bytes = source_.files->read(seen);
+      if (looks_like_normal_map(read_image(std::as_bytes(std::span(bytes)), seen.string()))) {
         model_.notes.push_back("the bump map '" + source->name + "' of the material '" +
                                material.name + "' holds normals and is taken as normal map");
         return source;
@@ -340,6 +341,7 @@ Model parse_obj(std::span<const std::byte> bytes, const std::filesystem::path& p
   auto source = std::make_shared<ModelSource>();
   source->format = ModelFormat::Obj;
   source->folder = path.parent_path();
+  source->files = options.files;
   source->text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   source->flip_v = options.flip_v;
   Model model;

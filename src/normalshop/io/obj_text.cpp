@@ -34,16 +34,15 @@ std::string obj_path(std::string name) {
 
 std::vector<std::string> obj_libraries(const ModelSource& source) {
   std::vector<std::string> names;
-  std::error_code ignored;
   for (const std::string& line : source.libraries) {
-    if (fs::is_regular_file(source.folder / obj_path(line), ignored)) {
+    if (source.files->has(source.folder / obj_path(line))) {
       names.push_back(obj_path(line));
       continue;
     }
     std::string_view rest = line;
     for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
       const fs::path file = source.folder / obj_path(std::string(word));
-      if (word.starts_with('#') && !fs::is_regular_file(file, ignored)) break;
+      if (word.starts_with('#') && !source.files->has(file)) break;
       names.push_back(obj_path(std::string(word)));
     }
   }

@@ -137,7 +137,7 @@ class ObjWriter {
     for (const std::string& name : obj_libraries(source_)) {
       std::string text;
       try {
-        text = read_file(source_.folder / name);
+        text = source_.files->read(source_.folder / name);
       } catch (const IoError& error) {
         companions_.result.notes.push_back(error.what());
         continue;

@@ -58,9 +58,11 @@ std::vector<std::optional<MapSource>> given_maps(const std::vector<std::string>&
   return out;
 }
 
-RawImage read_source(const MapSource& source, ImageTraits* traits = nullptr) {
-  return source.bytes.empty() ? read_image(source.path, traits)
-                              : read_image(source.bytes, source.name, traits);
+RawImage read_source(const MapSource& source, const FileSource& files,
+                     ImageTraits* traits = nullptr) {
+  if (!source.bytes.empty()) return read_image(source.bytes, source.name, traits);
+  const std::string bytes = files.read(source.path);
+  return read_image(std::as_bytes(std::span(bytes)), source.path.string(), traits);
 }
 
 /// A scale that codes can be read with; maps of others are multiplied by it.
@@ -88,17 +90,6 @@ NormalConvention choose_convention(const ConventionGuess& guess, const OpenOptio
   return convention;
 }
 
-NormalMap fit_size(NormalMap map, int size) {
-  const int largest = std::max(map.width(), map.height());
-  if (size == 0 || size == largest) return map;
-  const auto scaled = [&](int side) {
-    return std::max(1, static_cast<int>(std::lround(double(side) * size / largest)));
-  };
-  // Resampled slopes need more steps than 8 bits have.
-  const CodeType type = map.codes().type() == CodeType::F32 ? CodeType::F32 : CodeType::U16;
-  return resize(map, scaled(map.width()), scaled(map.height()), type);
-}
-
 /// What the guess says, and what the user's flags make of it.
 std::string said(const ConventionGuess& guess, const NormalConvention& convention) {
   if (convention.space == guess.convention.space &&
@@ -108,6 +99,29 @@ std::string said(const ConventionGuess& guess, const NormalConvention& conventio
   return "read as " + std::string(name_of(convention.space)) + " space, green " +
          (convention.green_down ? "down" : "up") + ", as the flags say; it looks like " +
          guess.sentence;
+}
+
+/// Known, or guessed.
+NormalConvention find_convention(const RawImage& codes, const TextureSet& set,
+                                 const OpenOptions& options, OpenedDocument& opened,
+                                 OpenedSet& info) {
+  const auto known = options.conventions.find(set.name);
+  if (known != options.conventions.end()) return known->second;
+  info.guess = naming(info.normal_map, [&] { return guess_convention(codes, options.space); });
+  const NormalConvention convention = choose_convention(*info.guess, options, set.normal_scale);
+  opened.notes.push_back(set.name + ": " + said(*info.guess, convention));
+  return convention;
+}
+
+NormalMap fit_size(NormalMap map, int size) {
+  const int largest = std::max(map.width(), map.height());
+  if (size == 0 || size == largest) return map;
+  const auto scaled = [&](int side) {
+    return std::max(1, static_cast<int>(std::lround(double(side) * size / largest)));
+  };
+  // Resampled slopes need more steps than 8 bits have.
+  const CodeType type = map.codes().type() == CodeType::F32 ? CodeType::F32 : CodeType::U16;
+  return resize(map, scaled(map.width()), scaled(map.height()), type);
 }
 
 /// The map as it shows with the model's scale.
@@ -127,7 +141,7 @@ NormalMap scaled_normals(NormalMap map, const TextureSet& set, OpenedDocument& o
 NormalMap open_normals(const MapSource& source, const TextureSet& set, const OpenOptions& options,
                        OpenedDocument& opened, OpenedSet& info, const Progress& progress) {
   ImageTraits traits;
-  RawImage codes = read_source(source, &traits);
+  RawImage codes = read_source(source, *options.files, &traits);
   progress.at(0.3, "guessing conventions");
   info.normal_map = source.name.empty() ? source.path.string() : source.name;
   info.normal_map_path = source.path;
@@ -136,9 +150,7 @@ NormalMap open_normals(const MapSource& source, const TextureSet& set, const Ope
   info.half_float = traits.half_float;
   info.imported_width = codes.width();
   info.imported_height = codes.height();
-  info.guess = naming(info.normal_map, [&] { return guess_convention(codes, options.space); });
-  const NormalConvention convention = choose_convention(*info.guess, options, set.normal_scale);
-  opened.notes.push_back(set.name + ": " + said(*info.guess, convention));
+  const NormalConvention convention = find_convention(codes, set, options, opened, info);
   NormalMap map = naming(info.normal_map, [&] { return NormalMap(std::move(codes), convention); });
   map = scaled_normals(std::move(map), set, opened);
   progress.at(0.4, "resizing maps");
@@ -150,7 +162,7 @@ Document::Maps open_maps(const TextureSet& set, const std::optional<MapSource>& 
                          OpenedDocument& opened, OpenedSet& info, const Progress& progress) {
   Document::Maps maps;
   if (albedo) {
-    RawImage codes = read_source(*albedo);
+    RawImage codes = read_source(*albedo, *options.files);
     maps.albedo = ColorMap(std::move(codes), set.albedo_factor);
   } else {
     maps.albedo = ColorMap(set.albedo_factor);
@@ -185,9 +197,8 @@ std::optional<MapSource> choose(const std::optional<MapSource>& given,
   return given ? given : own;
 }
 
-bool is_missing(const MapSource& source) {
-  std::error_code error;
-  return source.bytes.empty() && !std::filesystem::exists(source.path, error);
+bool is_missing(const MapSource& source, const FileSource& files) {
+  return source.bytes.empty() && !files.has(source.path);
 }
 
 /// One edit there shows in several places of the model.
@@ -243,6 +254,7 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
   progress.at(0.0, "reading the model");
   ModelReadOptions reading;
   reading.flip_v = options.flip_v;
+  reading.files = options.files;
   Model model = read_model(options.model, reading);
   ChosenMaps given{given_maps(options.normal_maps, model, "--normal-map"),
                    given_maps(options.albedos, model, "--albedo")};
@@ -258,7 +270,7 @@ OpenedDocument open_document(const OpenOptions& options, const Progress& progres
     const TextureSet& set = opened.model.texture_sets[i];
     progress.at(0.1, "reading maps");
     std::optional<MapSource> albedo = choose(albedos[i], set.albedo);
-    if (albedo && !albedos[i] && is_missing(*albedo)) {
+    if (albedo && !albedos[i] && is_missing(*albedo, *options.files)) {
       opened.notes.push_back(set.name + ": the colour map " + albedo->path.string() +
                              " is missing; shown without colour");
       albedo.reset();

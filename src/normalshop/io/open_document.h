@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +23,9 @@ struct OpenOptions {
   std::optional<bool> green_down;
   bool flip_v = false;
   int size = 0;  ///< larger side of the normal maps in texels; 0: as they are
+  std::shared_ptr<const FileSource> files = disk_files();  ///< that hold all of these
+  /// What the codes of a texture set are known to mean, by its name: then that is not guessed.
+  std::map<std::string, NormalConvention> conventions = {};
 };
 
 /// Where a texture set's normals came from.

@@ -132,11 +132,11 @@ std::filesystem::path tile_path(const std::filesystem::path& pattern, int tile) 
   return pattern.parent_path() / name;
 }
 
-std::optional<std::filesystem::path> first_tile(const std::filesystem::path& pattern) {
+std::optional<std::filesystem::path> first_tile(const std::filesystem::path& pattern,
+                                                const FileSource& files) {
   for (int tile = first_tile_number; tile <= last_tile_number; ++tile) {
     std::filesystem::path path = tile_path(pattern, tile);
-    std::error_code error;
-    if (std::filesystem::is_regular_file(path, error)) return path;
+    if (files.has(path)) return path;
   }
   return std::nullopt;
 }

@@ -19,7 +19,8 @@ bool names_tiles(const std::filesystem::path& path);
 /// The name of one tile's file.
 std::filesystem::path tile_path(const std::filesystem::path& pattern, int tile);
 /// The first tile's file that exists.
-std::optional<std::filesystem::path> first_tile(const std::filesystem::path& pattern);
+std::optional<std::filesystem::path> first_tile(const std::filesystem::path& pattern,
+                                                const FileSource& files);
 
 /// Splits the texture sets for which `tiled` is true into one a tile that their triangles lie in,
 /// named "<set>.<tile>", ascending: maps that name tiles become the tile's own, UVs move to 0..1,

@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "normalshop/io/file_source.h"
+
 /// Inside the io floor: a glTF file's JSON and buffers, with every field checked before it is used.
 ///
 /// The JSON is read here and not by tinygltf, because the writer edits the same JSON: it must keep
@@ -27,7 +29,8 @@ struct File {
 };
 
 /// Parses .gltf text or .glb and loads all buffers. Throws InvalidInput or IoError.
-File parse(std::span<const std::byte> bytes, const std::filesystem::path& path);
+File parse(std::span<const std::byte> bytes, const std::filesystem::path& path,
+           const FileSource& files);
 /// The JSON alone, already known to be good.
 Json parse_json(const std::string& text, const std::string& name);
 

@@ -23,6 +23,7 @@ using PrimitiveIndex = std::pair<std::size_t, std::size_t>;
 struct ModelSource {
   ModelFormat format = ModelFormat::Gltf;
   std::filesystem::path folder;
+  std::shared_ptr<const FileSource> files;     ///< that it came from
   std::string text;                            ///< glTF: its JSON; OBJ: the whole file
   std::vector<std::string> buffers;            ///< glTF: bytes of each buffer
   bool flip_v = false;                         ///< read with flipped v
@@ -63,6 +64,7 @@ class Companions {
   void put(const std::string& name, std::string_view bytes);
 
   std::filesystem::path source_folder_;
+  std::shared_ptr<const FileSource> files_;
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> reserved_;
   std::map<std::string, std::string> done_;  ///< by source path
