@@ -27,6 +27,7 @@ void run(int argc, char** argv) {
                       "in editing charts and writes them back to the atlas.",
                       NORMALSHOP_VERSION);
   add_edit_verb(program);
+  add_document_verbs(program);
   add_render_verb(program);
   add_compare_verb(program);
   add_info_verb(program);

@@ -66,9 +66,9 @@ void run_info(const InfoFlags& flags) {
 }  // namespace
 
 void add_info_verb(CommandLine& program) {
-  Verb verb = program.verb("info", "Says what a model or a map is");
+  Verb verb = program.verb("info", "Says what a model, a map or a document is");
   InfoFlags& flags = verb.runs(run_info);
-  verb.takes("file", flags.file, "Model (glTF, GLB, OBJ) or image").required();
+  verb.takes("file", flags.file, "Model (glTF, GLB, OBJ), image or document").required();
   verb.flag("--flip-v", flags.flip_v, "The model's V runs the other way than its format says");
   verb.flag("--json", flags.json, "Print as JSON");
 }

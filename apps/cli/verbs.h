@@ -7,6 +7,8 @@
 namespace normalshop::cli {
 
 void add_edit_verb(CommandLine& program);
+/// new, apply, log, undo, redo, verify and export.
+void add_document_verbs(CommandLine& program);
 void add_render_verb(CommandLine& program);
 void add_compare_verb(CommandLine& program);
 void add_info_verb(CommandLine& program);

@@ -20,8 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string>& verbs() {
-  static const std::vector<std::string> all{"edit", "render",   "compare", "info",
-                                            "demo", "describe", "unwrap"};
+  static const std::vector<std::string> all{"edit",     "render", "compare", "info",  "demo",
+                                            "describe", "unwrap", "new",     "apply", "log",
+                                            "undo",     "redo",   "verify",  "export"};
   return all;
 }
 
