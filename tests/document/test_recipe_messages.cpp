@@ -74,7 +74,7 @@ TEST(RecipeMessages, AnEdit) {
             "r.json: edits[0].spray.zero must be a number from 1 to 90, not the number 91");
   EXPECT_EQ(pen(good_pen, R"("colour": 1)"),
             "r.json: edits[0]: there is no field \"colour\"; it may be operator, view, mode, "
-            "curvature, details, strength, effective, spray, window, options, strokes, mirror or "
+            "curvature, details, strength, effective, spray, window, options, strokes, mirror, part or "
             "comment");
 }
 
