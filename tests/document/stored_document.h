@@ -64,7 +64,8 @@ class StoredSquare : public ::testing::Test {
     return {
         pen("[-0.4, 0.4], [-0.3, 0.3]"), edit(R"("operator": "warp", "view": "front",
                 "options": {"kind": "grab", "radius": 0.2}, "strokes": [[[-0.3, 0.3], [-0.2, 0.2]]])"),
-        edit(R"("operator": "smooth", "view": "front", "options": {"sigma": 0.01, "area": "brush", "brush": 0.1},
+        edit(
+            R"("operator": "smooth", "view": "front", "options": {"sigma": 0.01, "area": "brush", "brush": 0.1},
                 "strokes": [[[-0.3, 0.3], [0.1, 0.1]]])")};
   }
 
