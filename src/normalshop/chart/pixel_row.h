@@ -38,11 +38,11 @@ struct PixelRow {
     alignas(64) Lane x{};
     alignas(64) Lane y{};
     alignas(64) Lane z{};
-    void set(int i, const Vec3f& v) {
+    void set(int i, const Vec3f& vector) {
       const auto k = static_cast<std::size_t>(i);
-      x[k] = v.x();
-      y[k] = v.y();
-      z[k] = v.z();
+      x[k] = vector.x();
+      y[k] = vector.y();
+      z[k] = vector.z();
     }
   };
 
