@@ -100,11 +100,12 @@ void run_log(const FileFlags& flags) {
   }
 }
 
-void add_log_verb(CommandLine& program) {
-  Verb verb = program.verb("log", "Lists the edits of a document");
-  FileFlags& flags = verb.runs(run_log);
+void add_file_verb(CommandLine& program, const char* name, const char* summary,
+                   void (*run)(const FileFlags&), const char* json_help) {
+  Verb verb = program.verb(name, summary);
+  FileFlags& flags = verb.runs(run);
   verb.takes("document", flags.document, document_help).required();
-  verb.flag("--json", flags.json, "Print those that are not undone as a recipe");
+  verb.flag("--json", flags.json, json_help);
 }
 
 struct StepFlags {
@@ -156,13 +157,6 @@ void run_verify(const FileFlags& flags) {
   if (!flags.json) std::printf("%s is whole\n", flags.document.string().c_str());
 }
 
-void add_verify_verb(CommandLine& program) {
-  Verb verb = program.verb("verify", "Reads all of a document and names what is damaged");
-  FileFlags& flags = verb.runs(run_verify);
-  verb.takes("document", flags.document, document_help).required();
-  verb.flag("--json", flags.json, "Print what is damaged as JSON");
-}
-
 struct ExportVerbFlags {
   fs::path document;
   fs::path output;
@@ -191,10 +185,12 @@ void add_export_verb(CommandLine& program) {
 void add_document_verbs(CommandLine& program) {
   add_new_verb(program);
   add_apply_verb(program);
-  add_log_verb(program);
+  add_file_verb(program, "log", "Lists the edits of a document", run_log,
+                "Print those that are not undone as a recipe");
   add_step_verb(program, "undo", "Takes the last edits of a document back", run_undo);
   add_step_verb(program, "redo", "Brings edits that were undone back", run_redo);
-  add_verify_verb(program);
+  add_file_verb(program, "verify", "Reads all of a document and names what is damaged", run_verify,
+                "Print what is damaged as JSON");
   add_export_verb(program);
 }
 

@@ -47,6 +47,16 @@ void draw_by_points(const Edit& edit, std::size_t least, LiveEdit& live) {
   }
 }
 
+void expect_drawn_as_applied(const Edit& whole, Document applied) {
+  Document drawn = applied;
+  applied.apply(whole);
+  const auto live = drawn.begin(without_strokes(whole));
+  draw_by_points(whole, 1, *live);
+  live->finish();
+  EXPECT_EQ(differing(drawn, applied), 0);
+  EXPECT_TRUE(map_of(drawn).has_edits());
+}
+
 std::string many_points() {
   std::string points = R"("strokes": [[)";
   for (int i = 0; i < 24; ++i) {
@@ -93,14 +103,7 @@ TEST(LiveEdit, LongStrokesAcrossSeamsAreThoseOfApply) {
     const Edit whole = edit(fields + R"(, "window": "view", "view": {"direction": [1, 0.3, 0.2],
         "center": [0, 0, 0], "width": 2, "height": 2}, )" +
                             strokes);
-    Document applied = document(uv_sphere(24, 12), noise_map(128, CodeType::U16));
-    Document drawn = applied;
-    applied.apply(whole);
-    const auto live = drawn.begin(without_strokes(whole));
-    draw_by_points(whole, 1, *live);
-    live->finish();
-    EXPECT_EQ(differing(drawn, applied), 0);
-    EXPECT_TRUE(map_of(drawn).has_edits());
+    expect_drawn_as_applied(whole, document(uv_sphere(24, 12), noise_map(128, CodeType::U16)));
   }
 }
 
@@ -116,14 +119,7 @@ TEST(LiveEdit, DensePointsAreThoseOfApply) {
       edit(R"("operator": "pen", "options": {"width": 0.5, "height": 0.1}, "window": "view",
               "view": "front", "strokes": [[)" +
            points + "]]");
-  Document applied = document(plane_grid(2), noise_map(64, CodeType::U8));
-  Document drawn = applied;
-  applied.apply(whole);
-  const auto live = drawn.begin(without_strokes(whole));
-  draw_by_points(whole, 1, *live);
-  live->finish();
-  EXPECT_EQ(differing(drawn, applied), 0);
-  EXPECT_TRUE(map_of(drawn).has_edits());
+  expect_drawn_as_applied(whole, document(plane_grid(2), noise_map(64, CodeType::U8)));
 }
 
 TEST(LiveEdit, StrokesMayBecomeOthers) {

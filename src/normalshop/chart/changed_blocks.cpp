@@ -9,7 +9,7 @@ namespace normalshop {
 
 namespace {
 
-int blocks_along(int pixels, int side) { return (pixels + side - 1) / side; }
+int blocks_along(int pixels) { return (pixels + edit_block - 1) / edit_block; }
 
 /// Makes a row of one image that of another. Was it different?
 template <class T>
@@ -27,17 +27,17 @@ ChangedBlocks::ChangedBlocks(SlopeView change, MaskView coverage)
       coverage_(coverage),
       last_change_(change.width(), change.height(), Vec2f(0.0F, 0.0F)),
       last_coverage_(coverage.width(), coverage.height(), 0.0F),
-      blocks_(blocks_along(change.width(), side), blocks_along(change.height(), side), 0) {}
+      blocks_(blocks_along(change.width()), blocks_along(change.height()), 0) {}
 
 void ChangedBlocks::update(const Rect& pixels) {
+  constexpr int side = edit_block;
   for (int y = looked_at_.y0; y < looked_at_.y1; ++y) {
     std::fill(blocks_.row(y) + looked_at_.x0, blocks_.row(y) + looked_at_.x1, std::uint8_t{0});
   }
   looked_at_ = {};
   const Rect all = intersect(pixels, change_.rect());
   if (all.empty()) return;
-  looked_at_ = {all.x0 / side, all.y0 / side, blocks_along(all.x1, side),
-                blocks_along(all.y1, side)};
+  looked_at_ = {all.x0 / side, all.y0 / side, blocks_along(all.x1), blocks_along(all.y1)};
   parallel_for(static_cast<std::size_t>(looked_at_.height()), 4, [&](std::size_t a, std::size_t b) {
     for (int y = looked_at_.y0 + static_cast<int>(a); y < looked_at_.y0 + static_cast<int>(b);
          ++y) {
@@ -66,7 +66,9 @@ bool ChangedBlocks::take(const Rect& block) {
 
 bool ChangedBlocks::meet(float left, float top, float right, float bottom) const {
   constexpr int beyond = 3;  // pixels, of a bicubic kernel
-  const auto block = [](float pixel) { return static_cast<int>(std::max(pixel, 0.0F)) / side; };
+  const auto block = [](float pixel) {
+    return static_cast<int>(std::max(pixel, 0.0F)) / edit_block;
+  };
   const Rect near = intersect({block(left - beyond), block(top - beyond), block(right + beyond) + 1,
                                block(bottom + beyond) + 1},
                               looked_at_);

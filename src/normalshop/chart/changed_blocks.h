@@ -2,13 +2,15 @@
 
 #include <cstdint>
 
+#include "normalshop/chart/edit_reach.h"
 #include "normalshop/core/image.h"
 #include "normalshop/core/rect.h"
 
 /// What has become different in a growing edit, private to floor 4.
 namespace normalshop {
 
-/// Remembers an edit's pixels, to tell in which blocks of them it has changed since the last time.
+/// Remembers an edit's pixels, to tell in which blocks of them (of edit_block pixels a side) it has
+/// changed since the last time.
 class ChangedBlocks {
  public:
   /// Both are 0 now and read by each update(); coverage may be empty.
@@ -20,7 +22,6 @@ class ChangedBlocks {
   bool meet(float left, float top, float right, float bottom) const;
 
  private:
-  static constexpr int side = 8;
   bool take(const Rect& block);
 
   SlopeView change_;

@@ -25,10 +25,6 @@ int texel_of(float u, int size) {
   return std::clamp(static_cast<int>(inside * static_cast<float>(size)), 0, size - 1);
 }
 
-Vec2f size_in_texels(const RawImage& codes) {
-  return {static_cast<float>(codes.width()), static_cast<float>(codes.height())};
-}
-
 }  // namespace
 
 void FootprintReader::add(const PixelRun& run, int x, int y) {

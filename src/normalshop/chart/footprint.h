@@ -13,6 +13,10 @@ namespace normalshop {
 /// Texels along a pixel's side up to which one bilinear sample shows all of them.
 inline constexpr float fine_texels = 1.5F;
 
+inline Vec2f size_in_texels(const RawImage& codes) {
+  return {static_cast<float>(codes.width()), static_cast<float>(codes.height())};
+}
+
 /// Do the pixels of a triangle cover more than fine_texels of a map of that size along a side? Not
 /// those of triangles so thin that steps from pixel to pixel are no numbers.
 inline bool is_minified(const PixelTriangle& triangle, const Vec2f& size) {

@@ -96,12 +96,9 @@ class Pull {
 };
 
 Pull::MapSizes Pull::sizes_of(const StorageSet& set, const PullOptions& options) {
-  const auto size = [](const RawImage& codes) {
-    return Vec2f(static_cast<float>(codes.width()), static_cast<float>(codes.height()));
-  };
   MapSizes sizes;
-  if (options.means && options.normals) sizes.normals = size(set.normals.codes());
-  if (options.means && options.albedo) sizes.albedo = size(set.albedo.codes());
+  if (options.means && options.normals) sizes.normals = size_in_texels(set.normals.codes());
+  if (options.means && options.albedo) sizes.albedo = size_in_texels(set.albedo.codes());
   return sizes;
 }
 
