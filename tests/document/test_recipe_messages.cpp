@@ -72,10 +72,11 @@ TEST(RecipeMessages, AnEdit) {
             "r.json: edits[0].effective.full must be below zero, which is 75 degrees");
   EXPECT_EQ(pen(good_pen, R"("spray": {"zero": 91})"),
             "r.json: edits[0].spray.zero must be a number from 1 to 90, not the number 91");
-  EXPECT_EQ(pen(good_pen, R"("colour": 1)"),
-            "r.json: edits[0]: there is no field \"colour\"; it may be operator, view, mode, "
-            "curvature, details, strength, effective, spray, window, options, strokes, mirror, part or "
-            "comment");
+  EXPECT_EQ(
+      pen(good_pen, R"("colour": 1)"),
+      "r.json: edits[0]: there is no field \"colour\"; it may be operator, view, mode, "
+      "curvature, details, strength, effective, spray, window, options, strokes, mirror, part or "
+      "comment");
 }
 
 TEST(RecipeMessages, Options) {
