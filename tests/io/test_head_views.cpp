@@ -51,8 +51,8 @@ TEST(HeadViews, UpdateEveryTexelOfTheirEffectiveChartsAndNoOther) {
   EXPECT_EQ(all.missed, 0U);
   EXPECT_EQ(all.unlinked, 0U);
   EXPECT_EQ(all.outside, 0U);
-  // Surface seen almost edge-on may lie closely behind what is drawn, with pixels of four texels more
-  // of it.
+  // Surface seen almost edge-on may lie closely behind what is drawn, with pixels of four texels
+  // more of it.
   EXPECT_LT(all.behind, all.effective / 500);
 }
 
