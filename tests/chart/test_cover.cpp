@@ -3,6 +3,7 @@
 #include "chart_fixtures.h"
 #include "support/chart_bijection.h"
 #include "support/meshes.h"
+#include "support/sanitized.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/chart/cover.h"
@@ -63,6 +64,7 @@ std::vector<float> best_cosines(const Mesh& mesh, const StorageAtlas& storage,
 }
 
 TEST(Cover, shows_all_of_a_sphere_squarely) {
+  NORMALSHOP_SKIP_FIGURES();
   const Mesh& mesh = sphere();
   const StorageAtlas storage = storage_of(mesh, flat_normal_map(64, 64, CodeType::U8));
   const std::vector<CoverView>& views = sphere_views();
@@ -72,6 +74,7 @@ TEST(Cover, shows_all_of_a_sphere_squarely) {
 }
 
 TEST(Cover, needs_one_view_for_a_plane_and_takes_no_more_than_asked_for) {
+  NORMALSHOP_SKIP_FIGURES();
   const std::vector<CoverView> one = cover_surface(plane_grid(2), {});
   ASSERT_EQ(one.size(), 1U);
   EXPECT_GT(one[0].view.direction.z(), 0.99F);

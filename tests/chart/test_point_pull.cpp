@@ -5,6 +5,7 @@
 
 #include "chart_fixtures.h"
 #include "support/meshes.h"
+#include "support/sanitized.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/chart/nearest_fill.h"
@@ -151,6 +152,7 @@ TEST(PointPull, sphere_as_by_triangles) {
 }
 
 TEST(PointPull, torus_as_by_triangles) {
+  NORMALSHOP_SKIP_FIGURES();
   for (const int size : map_sizes) {
     expect_agreement(ring_torus(96, 48), size, {0.1F, 1, 0.2F}, 200.0 / size);
     expect_agreement(ring_torus(96, 48), size, {0.5F, 0.6F, 0.6F}, 200.0 / size);
@@ -168,6 +170,7 @@ TEST(PointPull, ids_end_with_an_open_surface) {
 }
 
 TEST(PointPull, no_holes_at_seams) {
+  NORMALSHOP_SKIP_FIGURES();
   const Mesh mesh = plane_two_charts(2);
   for (int size = 24; size < 44; ++size) {
     const StorageAtlas storage = noisy(mesh, size);  // texels of about 10 pixels

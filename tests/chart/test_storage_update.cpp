@@ -3,6 +3,7 @@
 #include "chart_fixtures.h"
 #include "support/meshes.h"
 #include "support/same_codes.h"
+#include "support/sanitized.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/chart/point_pull.h"
@@ -236,6 +237,7 @@ TEST(StorageUpdate, same_bits_for_any_number_of_threads) {
 }
 
 TEST(StorageUpdate, many_edits_that_change_nothing) {
+  NORMALSHOP_SKIP_FIGURES();
   // Gathering writes nothing; writing pixels blurs a little more with every edit.
   const Mesh mesh = smooth_sphere(48, 24);
   const StorageAtlas before = storage_of(mesh, noise_map(256, CodeType::U8));

@@ -1,4 +1,5 @@
 #include "document/picture_fixture.h"
+#include "support/sanitized.h"
 
 #include "normalshop/chart/details.h"
 #include "normalshop/core/error.h"
@@ -142,6 +143,7 @@ TEST(AlongEdit, mirrors_its_direction) {
 
 /// Of the whole surface, what faces the direction changes; what turns away keeps its codes.
 TEST(AlongEdit, reaches_the_surface_that_faces_it) {
+  NORMALSHOP_SKIP_FIGURES();
   Document sphere = document(uv_sphere(48, 24), noise_map(along_size, CodeType::U16));
   const EditReport report =
       sphere.apply(edit(R"("operator": "smooth", "options": {"sigma": 0.05}, "view": "surface")" +

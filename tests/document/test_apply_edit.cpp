@@ -1,5 +1,6 @@
 #include "document/edit_fixture.h"
 #include "support/same_codes.h"
+#include "support/sanitized.h"
 
 #include "normalshop/core/options.h"
 #include "normalshop/core/parallel.h"
@@ -52,6 +53,7 @@ TEST(ApplyEdit, PenOnAPlaneGivesTheSlopesOfItsProfile) {
 }
 
 TEST(ApplyEdit, PenInViewModeDisplacesAHemisphereTowardsTheViewer) {
+  NORMALSHOP_SKIP_FIGURES();
   const Document before = hemisphere_document(512);
   Document after = hemisphere_document(512);
   after.apply(edit(pen_line + R"(, "view": "front")"));
@@ -224,6 +226,7 @@ NormalMap wave_on_slope(float shape) {
 // Far from the rim a wave's slopes are multiplied by the filter's response and the shape's by that
 // of a constant; 1/16 of the plane's width is the wave's length times 1/16.
 TEST(ApplyEdit, FiltersHaveTheirResponses) {
+  NORMALSHOP_SKIP_FIGURES();
   struct Case {
     std::string options;
     double wave;
@@ -270,6 +273,7 @@ TEST(ApplyEdit, CopiesLandOnTheirPoints) {
 }
 
 TEST(ApplyEdit, TheSameRecipeMeansTheSameAtAnyResolution) {
+  NORMALSHOP_SKIP_FIGURES();
   for (const std::string what :
        {R"("operator": "pen", "options": {"profile": "scratch", "width": 0.15, "height": 0.02,
            "taper": 0.1}, "strokes": [[[-0.3, -0.2], [0, 0.1, 0.6], [0.3, 0]]])",

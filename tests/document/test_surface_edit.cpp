@@ -1,5 +1,6 @@
 #include "document/edit_fixture.h"
 #include "document/picture_fixture.h"
+#include "support/sanitized.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/surface/seam_mismatch.h"
@@ -56,6 +57,7 @@ const Document& covered_sphere() {
 }
 
 TEST(SurfaceEdit, SmoothsAllOfASphereWhateverTheViews) {
+  NORMALSHOP_SKIP_FIGURES();
   const Document& before = covered_sphere();
   Document once = before;
   Document twice = before;
@@ -72,6 +74,7 @@ TEST(SurfaceEdit, SmoothsAllOfASphereWhateverTheViews) {
 /// A Gaussian leaves exp(-(k sigma)^2 / 2) of a wave, wherever one looks. On the surface the waves
 /// are slower the more it is turned towards their own direction: two thirds of k^2 in the mean.
 TEST(SurfaceEdit, LeavesWhatTheFilterLeaves) {
+  NORMALSHOP_SKIP_FIGURES();
   Document all = wavy_sphere(0.1F);
   const Document flat = wavy_sphere(0.0F);
   const double before = mean_angle(map_of(all), map_of(flat));
@@ -121,6 +124,7 @@ TEST(SurfaceEdit, NothingToFilterKeepsEveryCode) {
 }
 
 TEST(SurfaceEdit, StrengthIsAPartOfIt) {
+  NORMALSHOP_SKIP_FIGURES();
   const Document& before = covered_sphere();
   EXPECT_FALSE(map_of(before).has_edits()) << "after an edit of strength 0";
   Document half = before;

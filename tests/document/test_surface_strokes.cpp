@@ -2,6 +2,7 @@
 
 #include "document/edit_fixture.h"
 #include "document/picture_fixture.h"
+#include "support/sanitized.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/rgbn/profile.h"
@@ -80,6 +81,7 @@ Vec3f beside_circle(const Vec3f& base, const Vec3f& axis) {
 }
 
 TEST(SurfaceStrokes, DrawOneProfileAllRoundASphere) {
+  NORMALSHOP_SKIP_FIGURES();
   Document sphere = bare_sphere();
   const Vec3f axis = Vec3f(0.4F, 0.7F, -0.5F).normalized();
   const EditReport report =
@@ -122,6 +124,7 @@ TEST(SurfaceStrokes, CrossEachOtherAtFullStrength) {
 
 /// 16 repetitions of the wave, whose phase is that of the way and not of any view.
 TEST(SurfaceStrokes, CarryPatternsOnFromViewToView) {
+  NORMALSHOP_SKIP_FIGURES();
   Document sphere = bare_sphere();
   const Vec3f axis = Vec3f(0.4F, 0.7F, -0.5F).normalized();
   sphere.apply(edit(R"("operator": "trim", "view": "surface",

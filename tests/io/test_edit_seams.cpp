@@ -2,6 +2,7 @@
 
 #include "io/temp_folder.h"
 #include "support/data.h"
+#include "support/sanitized.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/io/edit_report.h"
@@ -57,6 +58,7 @@ std::string on_corner(const std::string& fields) {
 }
 
 TEST(EditSeams, AgreeUnderEveryProfile) {
+  NORMALSHOP_SKIP_FIGURES();
   for (const char* profile : {"bump", "crease", "scratch"}) {
     const TempFolder folder;
     const SeamMismatch grown = growth(
@@ -71,6 +73,7 @@ TEST(EditSeams, AgreeUnderEveryProfile) {
 }
 
 TEST(EditSeams, AgreeUnderText) {
+  NORMALSHOP_SKIP_FIGURES();
   const TempFolder folder;
   expect_small(growth(six_charts(folder),
                       on_corner(R"("operator": "text", "options": {"text": "normals", "size": 0.3,

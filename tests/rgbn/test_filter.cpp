@@ -1,7 +1,9 @@
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "rgbn/filter_fixtures.h"
+#include "support/sanitized.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -91,8 +93,10 @@ TEST_P(FilterSigma, FiltersTheHeightOfATilingTexture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sigmas, FilterSigma,
-                         testing::Values(0.5F, 1.0F, 1.7F, 2.5F, 4.0F, 5.0F, 6.0F, 8.0F, 16.0F,
-                                         32.0F, 64.0F, 70.0F, 100.0F));
+                         testing::ValuesIn(sanitized ? std::vector{0.5F, 2.5F, 8.0F, 70.0F}
+                                                     : std::vector{0.5F, 1.0F, 1.7F, 2.5F, 4.0F,
+                                                                   5.0F, 6.0F, 8.0F, 16.0F, 32.0F,
+                                                                   64.0F, 70.0F, 100.0F}));
 
 // A Gaussian bump on a plain: the filtered height is known, and the border sees none of it.
 TEST_P(FilterSigma, FiltersTheHeightOfABump) {

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "support/slope_fields.h"
+#include "support/sanitized.h"
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
@@ -274,6 +275,7 @@ TEST(Project, HeightsOfNeighboursDifferByTheirMeanSlope) {
 
 // Noise on domains that refine: the multigrid keeps its pace.
 TEST(Project, IterationsDoNotGrowWithSize) {
+  NORMALSHOP_SKIP_FIGURES();
   for (const auto shape : {disc, snakes}) {
     std::vector<int> iterations;
     for (const int size : {256, 512, 1024}) {

@@ -4,6 +4,7 @@
 
 #include "../support/atlas_check.h"
 #include "../support/meshes.h"
+#include "support/sanitized.h"
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
@@ -142,6 +143,7 @@ TEST(Unwrap, SphereHasFewCharts) {
 }
 
 TEST(Unwrap, TorusAndBumpsKeepToTheBounds) {
+  NORMALSHOP_SKIP_FIGURES();
   for (Mesh mesh : {torus(), bumpy_ball()}) {
     const UnwrapReport report = unwrap_well(mesh);
     EXPECT_LE(report.charts, 40U);
@@ -275,6 +277,7 @@ TEST(Unwrap, GutterStaysFree) {
 }
 
 TEST(Unwrap, StretchAndAngleMakeMoreOrFewerCharts) {
+  NORMALSHOP_SKIP_FIGURES();
   const auto charts = [](float stretch, float angle) {
     Mesh mesh = bumpy_ball();
     UnwrapOptions options;
@@ -343,6 +346,7 @@ TEST(Unwrap, SoupOfTrianglesSurvives) {
 }
 
 TEST(Unwrap, NeedlesFit) {
+  NORMALSHOP_SKIP_FIGURES();
   Mesh mesh;
   mesh.positions = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {1.0F, 1e-5F, 0.0F}};
   mesh.triangles = {{0, 1, 2}};
