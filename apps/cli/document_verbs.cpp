@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "export_flags.h"
@@ -41,6 +42,7 @@ void add_new_verb(CommandLine& program) {
 struct ApplyFlags {
   fs::path document;
   fs::path recipe;
+  int layer = -1;
   bool json = false;
 };
 
@@ -60,6 +62,7 @@ void run_apply(const ApplyFlags& flags) {
   FileAssets assets(flags.recipe.parent_path());
   const Recipe recipe = parse_recipe(read_file(flags.recipe), flags.recipe.string(), assets);
   OpenedDocument opened = open_stored_document(flags.document);
+  if (flags.layer >= 0) opened.document.choose_layer(flags.layer);
   std::vector<EditReport> reports;
   std::vector<std::string> notes = opened.notes;
   for (const Edit& edit : recipe.edits) {
@@ -79,33 +82,70 @@ void add_apply_verb(CommandLine& program) {
   ApplyFlags& flags = verb.runs(run_apply);
   verb.takes("document", flags.document, document_help).required();
   verb.takes("recipe", flags.recipe, "JSON file of edits (docs/recipes.md)").required();
+  verb.takes("--layer", flags.layer, "Layer that the edits go to; else the topmost that shows")
+      .between(0, 1000000000);
   verb.flag("--json", flags.json, "Print the reports as JSON");
 }
 
-struct FileFlags {
+struct LogFlags {
   fs::path document;
+  bool all = false;
   bool json = false;
 };
 
-void run_log(const FileFlags& flags) {
+/// "7 pen: 120 texels changed (undone)"; with every branch also what it was made on.
+void print_step(const HistoryEntry& entry, bool all) {
+  std::printf("%lld ", static_cast<long long>(entry.id));
+  if (all && entry.parent) std::printf("(on %lld) ", static_cast<long long>(*entry.parent));
+  std::printf("%s: %zu texels changed%s\n", sentence(entry).c_str(), entry.texels_changed,
+              !entry.undone ? ""
+              : all         ? " (not on the present branch)"
+                            : " (undone)");
+}
+
+void run_log(const LogFlags& flags) {
   const DocumentFile file(flags.document);
   print_notes(file.notes());
   if (flags.json) {
     std::fputs(to_json(file.recipe()).c_str(), stdout);
     return;
   }
-  for (const HistoryEntry& entry : file.history()) {
-    std::printf("%lld %s: %zu texels changed%s\n", static_cast<long long>(entry.id),
-                entry.operation.c_str(), entry.texels_changed, entry.undone ? " (undone)" : "");
+  for (const HistoryEntry& entry : flags.all ? file.all_steps() : file.history()) {
+    print_step(entry, flags.all);
   }
 }
 
-void add_file_verb(CommandLine& program, const char* name, const char* summary,
-                   void (*run)(const FileFlags&), const char* json_help) {
-  Verb verb = program.verb(name, summary);
-  FileFlags& flags = verb.runs(run);
+void add_log_verb(CommandLine& program) {
+  Verb verb =
+      program.verb("log", "Lists the edits of a document and the other steps of its history");
+  LogFlags& flags = verb.runs(run_log);
   verb.takes("document", flags.document, document_help).required();
-  verb.flag("--json", flags.json, json_help);
+  verb.flag("--all", flags.all,
+            "Every branch: what was undone before something else was made, too");
+  verb.flag("--json", flags.json, "Print the edits that show as a recipe");
+}
+
+struct JumpFlags {
+  fs::path document;
+  int step = 0;
+};
+
+void run_jump(const JumpFlags& flags) {
+  DocumentFile file(flags.document);
+  print_notes(file.notes());
+  const std::optional<std::int64_t> step =
+      flags.step > 0 ? std::optional<std::int64_t>(flags.step) : std::nullopt;
+  const HistoryMove move = file.jump(step);
+  std::printf("%zu steps back, %zu on\n", move.back.size(), move.on.size());
+}
+
+void add_jump_verb(CommandLine& program) {
+  Verb verb = program.verb("jump", "Takes a document to any step of its history, on any branch");
+  JumpFlags& flags = verb.runs(run_jump);
+  verb.takes("document", flags.document, document_help).required();
+  verb.takes("step", flags.step, "Its number, from the log; 0: the imported maps")
+      .required()
+      .between(0, 1000000000);
 }
 
 struct StepFlags {
@@ -136,10 +176,15 @@ void add_step_verb(CommandLine& program, const char* name, const char* summary,
   Verb verb = program.verb(name, summary);
   StepFlags& flags = verb.runs(run);
   verb.takes("document", flags.document, document_help).required();
-  verb.takes("edits", flags.steps, "How many (1 unless given)").between(1, 1000000000);
+  verb.takes("steps", flags.steps, "How many (1 unless given)").between(1, 1000000000);
 }
 
-void run_verify(const FileFlags& flags) {
+struct VerifyFlags {
+  fs::path document;
+  bool json = false;
+};
+
+void run_verify(const VerifyFlags& flags) {
   const DocumentFile file(flags.document);
   print_notes(file.notes());
   const std::vector<std::string> faults = file.check();
@@ -155,6 +200,13 @@ void run_verify(const FileFlags& flags) {
                         (faults.size() == 1 ? " place" : " places"));
   }
   if (!flags.json) std::printf("%s is whole\n", flags.document.string().c_str());
+}
+
+void add_verify_verb(CommandLine& program) {
+  Verb verb = program.verb("verify", "Reads all of a document and names what is damaged");
+  VerifyFlags& flags = verb.runs(run_verify);
+  verb.takes("document", flags.document, document_help).required();
+  verb.flag("--json", flags.json, "Print what is damaged as JSON");
 }
 
 struct ExportVerbFlags {
@@ -185,12 +237,11 @@ void add_export_verb(CommandLine& program) {
 void add_document_verbs(CommandLine& program) {
   add_new_verb(program);
   add_apply_verb(program);
-  add_file_verb(program, "log", "Lists the edits of a document", run_log,
-                "Print those that are not undone as a recipe");
-  add_step_verb(program, "undo", "Takes the last edits of a document back", run_undo);
-  add_step_verb(program, "redo", "Brings edits that were undone back", run_redo);
-  add_file_verb(program, "verify", "Reads all of a document and names what is damaged", run_verify,
-                "Print what is damaged as JSON");
+  add_log_verb(program);
+  add_step_verb(program, "undo", "Takes the last steps of a document back", run_undo);
+  add_step_verb(program, "redo", "Brings steps that were undone back", run_redo);
+  add_jump_verb(program);
+  add_verify_verb(program);
   add_export_verb(program);
 }
 

@@ -7,8 +7,10 @@
 namespace normalshop::cli {
 
 void add_edit_verb(CommandLine& program);
-/// new, apply, log, undo, redo, verify and export.
+/// new, apply, log, undo, redo, jump, verify and export.
 void add_document_verbs(CommandLine& program);
+/// layers, disable, enable and change.
+void add_layer_verbs(CommandLine& program);
 void add_render_verb(CommandLine& program);
 void add_compare_verb(CommandLine& program);
 void add_info_verb(CommandLine& program);

@@ -129,7 +129,7 @@ TEST_F(DocumentVerbs, TellAboutDocuments) {
   make();
   apply();
   const std::string info = call({"info", path("d.nshop")}).out;
-  EXPECT_NE(info.find("edits: 1\n"), std::string::npos) << info;
+  EXPECT_NE(info.find("steps: 1\n"), std::string::npos) << info;
   EXPECT_NE(info.find("size: 160, 160\n"), std::string::npos) << info;
   EXPECT_EQ(call({"verify", path("d.nshop")}).out, path("d.nshop") + " is whole\n");
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 
 #include "document/stored_document.h"
@@ -28,9 +29,13 @@ class DocumentFileTest : public StoredSquare {
     for (const Edit& e : some_edits()) document.apply(e);
     return document;
   }
-  /// Changes a byte of the first tile's bytes where they lie in the file.
+  /// Changes a byte of the first edited tile's bytes where they lie in the file.
   void damage_first_tile() const {
-    const std::string tile = DocumentFile(path_).tiles().at(0).bytes;
+    const std::vector<PackedTile> tiles = DocumentFile(path_).tiles();
+    const auto edited =
+        std::find_if(tiles.begin(), tiles.end(), [](const PackedTile& t) { return t.layer >= 0; });
+    ASSERT_NE(edited, tiles.end());
+    const std::string tile = edited->bytes;
     std::string bytes = bytes_of(path_);
     const std::size_t at = bytes.find(tile.substr(0, 200));
     ASSERT_NE(at, std::string::npos);
@@ -71,7 +76,7 @@ TEST_F(DocumentFileTest, WholeOnesHaveNoFaults) {
   apply_some();
   EXPECT_EQ(DocumentFile(path_).check(), std::vector<std::string>());
   const Value summary = DocumentFile(path_).summary();
-  EXPECT_EQ(*summary.find("edits")->number(), 3.0);
+  EXPECT_EQ(*summary.find("steps")->number(), 3.0);
   EXPECT_EQ(*summary.find("document version")->number(), 1.0);
 }
 
@@ -87,7 +92,7 @@ TEST_F(DocumentFileTest, ADamagedTileIsNamed) {
   }
   const std::vector<std::string> faults = DocumentFile(path_).check();
   ASSERT_EQ(faults.size(), 1U);
-  expect_names(faults[0], {name, "after edit 2"});
+  expect_names(faults[0], {name, "after step 2"});
 }
 
 TEST_F(DocumentFileTest, AStepOntoADamagedTileIsNotTaken) {
@@ -190,7 +195,7 @@ TEST_F(DocumentFileTest, WriteProtectedOnesAreReadOnly) {
   try {
     DocumentFile file(path);
     for (std::size_t i = 1;; ++i) {
-      file.add(edit, i, changes);
+      file.add({{StackStep::Edit}, &edit, i}, changes);
       if (::write(told, "x", 1) != 1) break;
       if (i % 3 == 0 && !file.undo()) break;
     }
@@ -205,7 +210,7 @@ TEST_F(DocumentFileTest, KilledProgramsLoseNoFinishedEdit) {
   const MapsBefore before(document.storage(), true);
   const Edit stroke = pen("[-0.4, 0.4], [0.3, 0.3]");
   document.apply(stroke);
-  const std::vector<TileChange> changes = changed_tiles(before, document.storage());
+  const std::vector<TileChange> changes = changed_tiles(before, document.storage(), first_layer);
   std::size_t told = 0;
   for (std::uint32_t i = 0; i < 5; ++i) {
     int ends[2];

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "normalshop/chart/cover.h"
@@ -63,7 +64,8 @@ class Document {
   const StorageAtlas& storage() const { return storage_; }
   /// Of the mesh.
   const std::vector<SeamEdge>& seams() const { return seams_; }
-  /// All edits that are not undone. A document on file reads them anew, which takes a while.
+  /// All edits that are not undone; of a document on file those that are enabled, in layers that
+  /// are not hidden, from the lowest on: it reads them anew, which takes a while.
   std::vector<Edit> log() const;
 
   /// What loads the files that edits name, given these.
@@ -84,24 +86,52 @@ class Document {
   /// Throws InvalidInput when the view shows no surface, and for the view "surface".
   std::unique_ptr<LiveEdit> begin(Edit edit);
 
-  /// A document on file goes an edit back or forward, without limit and whenever the edit was made.
-  /// False where there is none. Takes as long as the tiles are that the edit changed. Throws
+  /// A document on file goes a step back or forward, without limit and whenever the step was made.
+  /// False where there is none. Takes as long as the tiles are that the step changed. Throws
   /// DocumentError, and nothing has changed then.
   bool undo();
   bool redo();
+  /// Goes to any step of any branch; none: to the imported maps. Throws InvalidInput where there is
+  /// no such step, and DocumentError.
+  void jump(std::optional<std::int64_t> step);
+
+  /// The layers of a document on file.
+  const EditStack& stack() const { return stack_; }
+  /// The layer that edits go to: the topmost that shows, unless another is chosen.
+  std::int64_t active_layer() const;
+  /// Throws InvalidInput where there is no such layer.
+  void choose_layer(std::int64_t layer);
+  /// Layers, or which edits count, of a document on file: an undoable step. Edits that stood on
+  /// what changes are made again. Throws InvalidInput for what the stack cannot take and for an
+  /// edit that cannot be made any more, DocumentError, and Cancelled; nothing has changed then.
+  void change(const StackChange& change, const Progress& progress = {});
+  /// Gives an edit of a document on file another recipe. Throws like change().
+  void change_edit(std::int64_t edit, const Edit& recipe, const Progress& progress = {});
 
  private:
   friend class LiveEdit;
   /// Adds an edit that the maps hold already. Where that fails they become what they were.
   void record(Edit edit, const EditReport& report, const MapsBefore* before);
-  void put(const std::vector<PackedTile>& tiles);
+  /// Adds a step to the file, and makes the layers anew that it changes.
+  EditReport restack(const NewStep& step, const Progress& progress);
+  Edit load_edit(std::int64_t step) const;
+  /// Can an edit be made on what the maps show?
+  bool shows_active_layer() const;
+  void take_stack(EditStack stack);
+  void follow(const HistoryMove& move);
+  void show_all();
+  void show(const TilePlace& place, const std::vector<PackedTile>& tiles);
+  /// Codes of colours are those that came until an edit moves one, so that an edit reads the same
+  /// whether the document was closed before it or not.
   void end_color_edits();
   Mesh mesh_;
   StorageAtlas storage_;
   std::vector<SeamEdge> seams_;
   SurfaceCover cover_;
   std::shared_ptr<DocumentFile> file_;
-  AssetsOf assets_of_;     // of a document on file
+  AssetsOf assets_of_;  // of a document on file
+  EditStack stack_;
+  std::optional<std::int64_t> active_layer_;
   std::vector<Edit> log_;  // of one in memory
   bool live_ = false;      // an edit is being drawn
 };

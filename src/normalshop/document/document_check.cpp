@@ -1,7 +1,7 @@
 #include <map>
 #include <set>
 #include <system_error>
-#include <tuple>
+#include <utility>
 
 #include "normalshop/core/error.h"
 #include "normalshop/core/options.h"
@@ -39,34 +39,29 @@ void note_faults(const Read& read, Faults& faults) {
 }
 
 std::string sentence(const DocumentFile& file, const TilePlace& place,
-                     const StoredHistory::Edit& edit, const std::string& what) {
+                     const StoredHistory::Step& step, const std::string& what) {
   return file.name_of_tile(place) +
-         (edit ? " after edit " + std::to_string(*edit) : " as it was imported") + " " + what;
+         (step ? " after step " + std::to_string(*step) : " as it was imported") + " " + what;
 }
 
-/// A place in the order of texture sets, attributes and tiles.
-std::tuple<std::uint32_t, Attribute, std::uint32_t> key_of(const TilePlace& place) {
-  return {place.set, place.attribute, place.tile};
-}
-
-/// The version of a tile that an edit left.
+/// The version of a layer's tile that a step left.
 struct LeftTile {
-  std::int64_t edit = 0;
+  std::int64_t step = 0;
   std::int64_t version = 0;
 };
-using LeftTiles = std::map<std::tuple<std::uint32_t, Attribute, std::uint32_t>, LeftTile>;
+using LeftTiles = std::map<std::pair<TilePlace, std::int64_t>, LeftTile>;
 
-/// By the edits that are not undone.
+/// By the steps that are not undone.
 LeftTiles left_tiles(const DocumentFile& file, const StoredHistory& history) {
   std::set<std::int64_t> path;
   for (const HistoryEntry& entry : file.history()) {
     if (!entry.undone) path.insert(entry.id);
   }
   LeftTiles tiles;
-  history.visit_versions([&](const TileVersion& version, const StoredHistory::Edit& edit) {
-    if (!edit || !path.contains(*edit)) return;
-    LeftTile& left = tiles[key_of(version.tile.place)];
-    if (*edit > left.edit) left = {*edit, version.id};
+  history.visit_versions([&](const TileVersion& version, const StoredHistory::Step& step) {
+    if (!step || !path.contains(*step)) return;
+    LeftTile& left = tiles[{version.tile.place, version.tile.layer}];
+    if (*step > left.step) left = {*step, version.id};
   });
   return tiles;
 }
@@ -74,18 +69,17 @@ LeftTiles left_tiles(const DocumentFile& file, const StoredHistory& history) {
 /// Whether the present tiles are these.
 void check_present(const DocumentFile& file, const StoredHistory& history, Faults& faults) {
   LeftTiles expected = left_tiles(file, history);
-  history.visit_tiles([&](const TileVersion& version, const StoredHistory::Edit& edit) {
-    const auto found = expected.find(key_of(version.tile.place));
+  history.visit_tiles([&](const TileVersion& version, const StoredHistory::Step& step) {
+    const auto found = expected.find({version.tile.place, version.tile.layer});
     const bool known = found != expected.end();
-    if (known ? found->second.version != version.id : edit.has_value()) {
-      faults.push_back(file.name_of_tile(version.tile.place) + " is not what the last edit made");
+    if (known ? found->second.version != version.id : step.has_value()) {
+      faults.push_back(file.name_of_tile(version.tile.place) + " is not what the last step made");
     }
     if (known) expected.erase(found);
   });
   for (const auto& [key, left] : expected) {
-    const TilePlace place{std::get<0>(key), std::get<1>(key), std::get<2>(key)};
-    faults.push_back(file.name_of_tile(place) + " lacks what edit " + std::to_string(left.edit) +
-                     " made");
+    faults.push_back(file.name_of_tile(key.first) + " lacks what step " +
+                     std::to_string(left.step) + " made");
   }
 }
 
@@ -130,7 +124,7 @@ std::vector<std::string> DocumentFile::check() const {
       faults);
   note_faults(
       [&] {
-        Statement row(database, "SELECT id FROM edits ORDER BY id");
+        Statement row(database, "SELECT id FROM steps WHERE recipe IS NOT NULL ORDER BY id");
         while (row.step()) {
           note_faults([&] { recipe(row.integer(0)); }, faults);
           note_faults([&] { files_of(row.integer(0)); }, faults);
@@ -140,12 +134,12 @@ std::vector<std::string> DocumentFile::check() const {
   note_faults(
       [&] {
         state_->history.visit_versions(
-            [&](const TileVersion& version, const StoredHistory::Edit& edit) {
+            [&](const TileVersion& version, const StoredHistory::Step& step) {
               const PackedTile& tile = version.tile;
               try {
                 check_tile(tile);
               } catch (const InvalidInput& error) {
-                faults.push_back(sentence(*this, tile.place, edit, error.what()));
+                faults.push_back(sentence(*this, tile.place, step, error.what()));
               }
             });
       },
@@ -160,9 +154,8 @@ Value DocumentFile::summary() const {
     Statement row(database, sql);
     return row.step() ? static_cast<std::size_t>(row.integer(0)) : std::size_t{0};
   };
-  std::size_t done = 0;
   std::size_t undone = 0;
-  for (const HistoryEntry& entry : history()) ++(entry.undone ? undone : done);
+  for (const HistoryEntry& entry : history()) undone += entry.undone ? 1 : 0;
   Statement head(database, "SELECT written_by FROM document");
   std::error_code error;
   return Value::Object{
@@ -170,11 +163,12 @@ Value DocumentFile::summary() const {
       {"written by", head.step() ? std::string(head.bytes(0)) : std::string()},
       {"bytes", static_cast<std::size_t>(std::filesystem::file_size(path(), error))},
       {"imported files", count("SELECT count(*) FROM imported_files")},
-      {"edits", done},
-      {"undone edits", undone},
+      {"steps", count("SELECT count(*) FROM steps")},
+      {"undone steps", undone},
       {"edited tiles",
        count("SELECT count(*) FROM tiles t JOIN tile_versions v ON v.id = t.version "
-             "WHERE v.edit IS NOT NULL")},
+             "WHERE v.step IS NOT NULL AND v.bytes IS NOT NULL")},
+      {"layer", layers_value(stack())},
       {"texture set", sets_value(sets_)}};
 }
 

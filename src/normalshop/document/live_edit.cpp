@@ -169,7 +169,8 @@ EditReport LiveEdit::finish() {
   assert(state_);
   State& state = *state_;
   Document& document = state.document;
-  const bool whole = state.edit.mirror || state.edit.curvature == CurvatureRule::Keep;
+  const bool whole = state.edit.mirror || state.edit.curvature == CurvatureRule::Keep ||
+                     !document.shows_active_layer();
   if (whole || state.edit.strokes.empty() || state.edit.strength == 0.0F) {
     const Edit edit = state.edit;
     cancel();

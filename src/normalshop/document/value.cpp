@@ -240,4 +240,20 @@ std::string to_line(const Value& value) {
   return out;
 }
 
+Value with_field(const Value& value, std::string_view path, const Value& field) {
+  const std::size_t dot = path.find('.');
+  const std::string name(path.substr(0, dot));
+  if (!value.is_null() && value.object() == nullptr) {
+    throw InvalidInput("'" + name + "' cannot be a field of " + value.describe());
+  }
+  Value::Object fields = value.object() != nullptr ? *value.object() : Value::Object();
+  auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.first == name; });
+  if (found == fields.end()) found = fields.insert(fields.end(), {name, Value()});
+  found->second = dot == std::string_view::npos
+                      ? field
+                      : with_field(found->second, path.substr(dot + 1), field);
+  return fields;
+}
+
 }  // namespace normalshop

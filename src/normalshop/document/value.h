@@ -52,6 +52,10 @@ inline Value vec3_value(const Vec3f& v) { return Value::Array{v.x(), v.y(), v.z(
 /// InvalidInput with the line, named `name`.
 Value parse_json(std::string_view text, std::string_view name);
 
+/// The value with one field, "options.width", set anew; objects on the way are made where they are
+/// missing. Throws InvalidInput where something else stands there.
+Value with_field(const Value& value, std::string_view path, const Value& field);
+
 /// Indented by 2; arrays of numbers on one line. Numbers print as the shortest text that reads
 /// back; numbers that are not finite as null.
 std::string to_json(const Value& value);

@@ -22,7 +22,8 @@ CREATE TABLE document(
   id INTEGER PRIMARY KEY CHECK(id = 1),
   written_by TEXT NOT NULL,
   import TEXT NOT NULL,
-  position INTEGER REFERENCES edits(id));
+  position INTEGER REFERENCES steps(id),
+  first INTEGER REFERENCES steps(id));
 CREATE TABLE files(
   id INTEGER PRIMARY KEY,
   size INTEGER NOT NULL,
@@ -47,33 +48,38 @@ CREATE TABLE texture_sets(
   centred_code INTEGER NOT NULL,
   signed_float INTEGER NOT NULL,
   scale REAL NOT NULL);
-CREATE TABLE edits(
+CREATE TABLE steps(
   id INTEGER PRIMARY KEY,
-  parent INTEGER REFERENCES edits(id),
-  operator TEXT NOT NULL,
+  parent INTEGER REFERENCES steps(id),
+  next INTEGER REFERENCES steps(id),
+  step TEXT NOT NULL,
+  target INTEGER NOT NULL,
+  details TEXT,
+  operator TEXT,
   texels INTEGER NOT NULL,
-  edit BLOB NOT NULL);
-CREATE INDEX edits_by_parent ON edits(parent);
-CREATE TABLE edit_files(
-  edit INTEGER NOT NULL REFERENCES edits(id),
+  recipe BLOB);
+CREATE TABLE step_files(
+  step INTEGER NOT NULL REFERENCES steps(id),
   name TEXT NOT NULL,
   file INTEGER NOT NULL REFERENCES files(id),
-  PRIMARY KEY(edit, name)) WITHOUT ROWID;
+  PRIMARY KEY(step, name)) WITHOUT ROWID;
 CREATE TABLE tile_versions(
   id INTEGER PRIMARY KEY,
-  edit INTEGER REFERENCES edits(id),
+  step INTEGER REFERENCES steps(id),
+  layer INTEGER NOT NULL,
   texture_set INTEGER NOT NULL REFERENCES texture_sets(id),
   attribute TEXT NOT NULL,
   tile INTEGER NOT NULL,
   previous INTEGER REFERENCES tile_versions(id),
-  bytes BLOB NOT NULL);
-CREATE INDEX tile_versions_by_edit ON tile_versions(edit);
+  bytes BLOB);
+CREATE INDEX tile_versions_by_step ON tile_versions(step);
 CREATE TABLE tiles(
   texture_set INTEGER NOT NULL REFERENCES texture_sets(id),
   attribute TEXT NOT NULL,
   tile INTEGER NOT NULL,
+  layer INTEGER NOT NULL,
   version INTEGER NOT NULL REFERENCES tile_versions(id),
-  PRIMARY KEY(texture_set, attribute, tile)) WITHOUT ROWID;
+  PRIMARY KEY(texture_set, attribute, tile, layer)) WITHOUT ROWID;
 )";
 
 /// Each makes the next version of the one before; none is ever changed once it is released.
