@@ -29,6 +29,7 @@ void run(int argc, char** argv) {
   add_edit_verb(program);
   add_document_verbs(program);
   add_layer_verbs(program);
+  add_replay_verb(program);
   add_render_verb(program);
   add_compare_verb(program);
   add_info_verb(program);

@@ -97,10 +97,11 @@ struct LogFlags {
 void print_step(const HistoryEntry& entry, bool all) {
   std::printf("%lld ", static_cast<long long>(entry.id));
   if (all && entry.parent) std::printf("(on %lld) ", static_cast<long long>(*entry.parent));
-  std::printf("%s: %zu texels changed%s\n", sentence(entry).c_str(), entry.texels_changed,
-              !entry.undone ? ""
-              : all         ? " (not on the present branch)"
-                            : " (undone)");
+  std::printf("%s", sentence(entry).c_str());
+  const bool edits = entry.change.step == StackStep::Edit;
+  if (edits || entry.texels_changed > 0) std::printf(": %zu texels changed", entry.texels_changed);
+  const char* undone = all ? " (not on the present branch)" : " (undone)";
+  std::printf("%s\n", entry.undone ? undone : "");
 }
 
 void run_log(const LogFlags& flags) {

@@ -11,6 +11,7 @@ void add_edit_verb(CommandLine& program);
 void add_document_verbs(CommandLine& program);
 /// layers, disable, enable and change.
 void add_layer_verbs(CommandLine& program);
+void add_replay_verb(CommandLine& program);
 void add_render_verb(CommandLine& program);
 void add_compare_verb(CommandLine& program);
 void add_info_verb(CommandLine& program);

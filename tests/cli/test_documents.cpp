@@ -188,11 +188,10 @@ TEST_F(DocumentVerbs, AKilledProgramLeavesAWholeDocument) {
   make();
   std::string edits;
   for (int i = 0; i < 200; ++i) {
-    edits +=
-        std::string(i > 0 ? "," : "") +
-        R"({"operator": "pen", "view": "front", "options": {"width": 0.1, "height": 0.01, "bevel": 0.02},
+    edits += std::string(i > 0 ? "," : "") +
+             R"({"operator": "pen", "view": "front", "options": {"width": 0.1, "height": 0.01},
                  "strokes": [[[0, 0], [0.1, )" +
-        std::to_string(0.001 * i) + "]]]}";
+             std::to_string(0.001 * i) + "]]]}";
   }
   write_file(folder_ / "many.json", R"({"version": 1, "edits": [)" + edits + "]}");
   for (int i = 0; i < 3; ++i) {
@@ -203,14 +202,21 @@ TEST_F(DocumentVerbs, AKilledProgramLeavesAWholeDocument) {
               path("many.json").c_str(), nullptr);
       ::_exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(700 + 150 * i));
+    // The first finished edit makes the log.
+    const fs::path log = path("d.nshop-wal");
+    for (int waits = 0; waits < 6000 && !(fs::exists(log) && fs::file_size(log) > 0); ++waits) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5 + 31 * i));
     ::kill(child, SIGKILL);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "it was done too early";
     EXPECT_EQ(call({"verify", path("d.nshop")}).out, path("d.nshop") + " is whole\n");
   }
   const OpenedDocument opened = open_stored_document(folder_ / "d.nshop");
   Document replayed = imported();
+  EXPECT_GE(opened.document.log().size(), 3U);
   for (const Edit& edit : opened.document.log()) replayed.apply(edit);
   EXPECT_TRUE(same_codes(replayed.storage().sets[0].normals.encode(),
                          opened.document.storage().sets[0].normals.encode()));
