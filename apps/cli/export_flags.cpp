@@ -44,8 +44,9 @@ void print_edits(std::span<const Edit> edits, std::span<const EditReport> report
       std::printf("height up to %.1f %% of the radius of curvature, ",
                   100.0 * static_cast<double>(e.relief.largest));
     }
-    std::printf("chart %d x %d, %.0f ms\n", e.chart_width, e.chart_height,
-                1e3 * (e.times.pull + e.times.operate + e.times.push));
+    std::printf("chart %d x %d, ", e.chart_width, e.chart_height);
+    if (e.tiles > 1) std::printf("%d tiles, ", e.tiles);
+    std::printf("%.0f ms\n", 1e3 * (e.times.pull + e.times.operate + e.times.push));
   }
 }
 

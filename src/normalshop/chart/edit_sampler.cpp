@@ -57,12 +57,30 @@ void EditSampler::drop_averted(TexelBatch& batch) const {
   }
 }
 
+/// Points outside edit.own, to a hundredth of a pixel: charts round differently, and no point must
+/// fall between two of them.
+void EditSampler::drop_others(TexelBatch& batch) const {
+  constexpr float slack = 0.01F;
+  const auto within = [](float p, int begin, int end) {
+    return p >= static_cast<float>(begin) - 0.5F - slack &&
+           p < static_cast<float>(end) - 0.5F + slack;
+  };
+  const Rect& own = *edit_.own;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(batch.count); ++i) {
+    if (within(batch.point.x[i], own.x0, own.x1) && within(batch.point.y[i], own.y0, own.y1)) {
+      continue;
+    }
+    batch.weight[i] = 0.0F;
+  }
+}
+
 bool EditSampler::read(TexelBatch& batch) const {
   return read_visible_weight(reach_, batch) && read_weighed(batch);
 }
 
 bool EditSampler::read_weighed(TexelBatch& batch) const {
   if (edit_.direction.mode == EditMode::Along) drop_averted(batch);
+  if (edit_.own) drop_others(batch);
   read_change(edit_.change, edit_.change.rect(), batch);
   batch.covered.fill(0.0F);
   bool any = false;

@@ -31,6 +31,7 @@ class EditSampler {
   EditSampler(const EditingChart& chart, const ChartEdit& edit, EditReach reach);
   static bool acts(const ChartEdit& edit, int x, int y);
   void drop_averted(TexelBatch& batch) const;
+  void drop_others(TexelBatch& batch) const;
   float coverage_at(float x, float y) const;
 
   const ChartEdit& edit_;

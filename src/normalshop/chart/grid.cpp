@@ -7,6 +7,16 @@
 
 namespace normalshop {
 
+Rect lattice_window(float pixel, const Vec2f& low, const Vec2f& high) {
+  const auto at = [&](float units) { return units / pixel; };
+  Rect window{static_cast<int>(std::floor(at(low.x()))),
+              static_cast<int>(std::floor(-at(high.y()))),
+              static_cast<int>(std::ceil(at(high.x()))), static_cast<int>(std::ceil(-at(low.y())))};
+  window.x1 = std::max(window.x1, window.x0 + 1);
+  window.y1 = std::max(window.y1, window.y0 + 1);
+  return window;
+}
+
 ChartGrid make_grid(const View& view, float pixel) {
   const Vec2f half(0.5F * view.width, 0.5F * view.height);
   return make_grid(view, pixel, -half, half);
@@ -22,12 +32,7 @@ ChartGrid make_grid(const View& view, float pixel, const Vec2f& low, const Vec2f
   // Pixels grow when the window would not fit.
   const float side = static_cast<float>(max_chart_side - 2);
   grid.pixel = std::max({pixel, (high.x() - low.x()) / side, (high.y() - low.y()) / side});
-  const auto at = [&](float units) { return units / grid.pixel; };
-  grid.window = {
-      static_cast<int>(std::floor(at(low.x()))), static_cast<int>(std::floor(-at(high.y()))),
-      static_cast<int>(std::ceil(at(high.x()))), static_cast<int>(std::ceil(-at(low.y())))};
-  grid.window.x1 = std::max(grid.window.x1, grid.window.x0 + 1);
-  grid.window.y1 = std::max(grid.window.y1, grid.window.y0 + 1);
+  grid.window = lattice_window(grid.pixel, low, high);
   return grid;
 }
 

@@ -34,8 +34,11 @@ struct ChartGrid {
   }
 };
 
-/// Largest side of a chart. Beyond it the pixels grow instead.
+/// Largest side of a chart. Beyond it the pixels grow instead, or the view is cut into tiles.
 inline constexpr int max_chart_side = 8192;
+
+/// The lattice pixels of that size that hold a part of a view, given as below; one at least.
+Rect lattice_window(float pixel, const Vec2f& low, const Vec2f& high);
 
 /// The window of `view` (its whole extent, or the part given in object units from its centre, y up)
 /// with pixels of that size, or larger: see max_chart_side. Throws InvalidInput when the window

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "normalshop/chart/details.h"
 #include "normalshop/chart/pull.h"
 
@@ -16,6 +18,8 @@ struct ChartEdit {
   SlopeView change;         ///< size of the chart
   MaskView coverage;        ///< 0 to 1; empty: 0 everywhere
   Rect region;              ///< outside, change and coverage are 0
+  /// Texels whose surface points lie outside these pixels stay as they are; none: all are edited.
+  std::optional<Rect> own = {};
 };
 
 struct PushResult {

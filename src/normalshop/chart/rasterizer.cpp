@@ -105,17 +105,18 @@ void Rasterizer::project(const Mesh& mesh, const ChartGrid& grid) {
   const Vec3f right = grid.view.right * inverse;
   const Vec3f down = -grid.view.up * inverse;
   const Vec3f towards = grid.view.direction;
-  const float x0 = -256.0F * static_cast<float>(grid.window.x0);
-  const float y0 = -256.0F * static_cast<float>(grid.window.y0);
+  // Subtracted after rounding: windows of one lattice share their pixels, bit for bit.
+  const std::int32_t x0 = 256 * grid.window.x0;
+  const std::int32_t y0 = 256 * grid.window.y0;
   const Vec3f center = grid.view.center;
   parallel_for(mesh.positions.size(), 32768, [&](std::size_t begin, std::size_t end) {
     constexpr float limit = 536870912.0F;  // 2^29: two million pixels
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f p = mesh.positions[i] - center;
-      const float x = std::clamp(p.dot(right) + x0, -limit, limit);
-      const float y = std::clamp(p.dot(down) + y0, -limit, limit);
-      vertices_[i] = {static_cast<std::int32_t>(std::lrintf(x)),
-                      static_cast<std::int32_t>(std::lrintf(y)), p.dot(towards)};
+      const float x = std::clamp(p.dot(right), -limit, limit);
+      const float y = std::clamp(p.dot(down), -limit, limit);
+      vertices_[i] = {static_cast<std::int32_t>(std::lrintf(x)) - x0,
+                      static_cast<std::int32_t>(std::lrintf(y)) - y0, p.dot(towards)};
     }
   });
 }

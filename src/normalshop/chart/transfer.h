@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "normalshop/chart/grid.h"
+
 namespace normalshop {
 
 /// How an editing chart is made of the storage atlas (thesis 5.3.1 and 5.3.2).
@@ -26,6 +28,9 @@ constexpr auto names_of(Update) {
 struct TransferOptions {
   Transfer transfer = Transfer::Triangle;
   Update update = Update::Gather;
+  /// Views with more pixels a side are cut into tiles where the edit allows it. Charts in one piece
+  /// have max_chart_side at most, whatever it says.
+  int largest_side = max_chart_side;
 
   bool operator==(const TransferOptions&) const = default;
 };

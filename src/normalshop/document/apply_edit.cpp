@@ -11,6 +11,7 @@
 #include "normalshop/document/prepare_edit.h"
 #include "normalshop/document/stroke_views.h"
 #include "normalshop/document/surface_part.h"
+#include "normalshop/document/tiled_edit.h"
 #include "normalshop/surface/seam_fit.h"
 
 namespace normalshop {
@@ -35,21 +36,6 @@ std::vector<SeamEdge> seams_near(const Mesh& mesh, std::span<const SeamEdge> sea
   return near;
 }
 
-/// The maps as they are, for little: they share what nobody edits.
-std::vector<NormalMap> copies(const StorageAtlas& storage) {
-  std::vector<NormalMap> maps;
-  maps.reserve(storage.sets.size());
-  for (const StorageSet& set : storage.sets) maps.push_back(set.normals);
-  return maps;
-}
-
-std::vector<const NormalMap*> pointers(const std::vector<NormalMap>& maps) {
-  std::vector<const NormalMap*> out;
-  out.reserve(maps.size());
-  for (const NormalMap& map : maps) out.push_back(&map);
-  return out;
-}
-
 void fit(const Mesh& mesh, std::span<const SeamEdge> seams, float kept, NormalMaps before,
          StorageAtlas& storage) {
   std::vector<NormalMap*> maps;
@@ -64,9 +50,9 @@ void push_normals(const Mesh& mesh, std::span<const SeamEdge> seams, PreparedEdi
   EditReport& report = prepared.report;
   const ChartEdit change = prepared.change();
   if (report.transfer.update == Update::Gather) {
-    const std::vector<NormalMap> before = copies(storage);
+    const std::vector<NormalMap> before = copies_of(storage);
     report.pushed = push(mesh, chart, change, storage);
-    fit_seams(mesh, seams, chart.grid, change.region, pointers(before), storage);
+    fit_seams(mesh, seams, chart.grid, change.region, pointers_to(before), storage);
     return;
   }
   report.pushed = update_storage(mesh, chart, change, report.transfer.update, storage);
@@ -96,10 +82,11 @@ void add(const EditReport& other, EditReport& report) {
     report.chart_width = other.chart_width;
     report.chart_height = other.chart_height;
     report.pixel = other.pixel;
+    report.tiles = other.tiles;
   }
   report.views += other.views;
   report.lost += other.lost;
-  report.coarser_than_texels = report.coarser_than_texels || other.coarser_than_texels;
+  report.texels_per_pixel = std::max(report.texels_per_pixel, other.texels_per_pixel);
   report.pushed.visited += other.pushed.visited;
   report.pushed.changed += other.pushed.changed;
   report.pushed.shared += other.pushed.shared;
@@ -112,9 +99,7 @@ void add(const EditReport& other, EditReport& report) {
   report.times.push += other.times.push;
 }
 
-PreparedEdit prepare_facing(const Edit& edit, const View& view, const Mesh& mesh,
-                            const StorageAtlas& storage, const TransferOptions& transfer) {
-  PreparedEdit prepared = prepare_edit(edit, view, mesh, storage, transfer);
+PreparedEdit facing(const Edit& edit, PreparedEdit prepared) {
   if (!prepared.faces) fail_averted(edit);
   return prepared;
 }
@@ -145,9 +130,9 @@ class SurfaceEdit {
     }
     if (!faces_) fail_averted(edit);
     Stopwatch watch;
-    const std::vector<NormalMap> before = copies(storage_);
+    const std::vector<NormalMap> before = copies_of(storage_);
     report.pushed = blend_.write(storage_);
-    fit(mesh_, part_.seams_within(seams), kept, pointers(before), storage_);
+    fit(mesh_, part_.seams_within(seams), kept, pointers_to(before), storage_);
     report.times.push += watch.lap();
   }
 
@@ -163,7 +148,7 @@ class SurfaceEdit {
 };
 
 void check_transfer(const Edit& edit, const TransferOptions& transfer) {
-  if (!(transfer == TransferOptions{})) {
+  if (transfer.transfer != Transfer::Triangle || transfer.update != Update::Gather) {
     throw InvalidInput(edit.path +
                        ".view must be one view, not \"surface\", with --transfer point or with "
                        "--update point or area");
@@ -213,6 +198,20 @@ EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const 
 
 }  // namespace
 
+std::vector<NormalMap> copies_of(const StorageAtlas& storage) {
+  std::vector<NormalMap> maps;
+  maps.reserve(storage.sets.size());
+  for (const StorageSet& set : storage.sets) maps.push_back(set.normals);
+  return maps;
+}
+
+std::vector<const NormalMap*> pointers_to(const std::vector<NormalMap>& maps) {
+  std::vector<const NormalMap*> out;
+  out.reserve(maps.size());
+  for (const NormalMap& map : maps) out.push_back(&map);
+  return out;
+}
+
 void fit_seams(const Mesh& mesh, std::span<const SeamEdge> seams, const ChartGrid& grid,
                const Rect& region, NormalMaps before, StorageAtlas& storage) {
   fit(mesh, seams_near(mesh, seams, grid, region), 1.0F, before, storage);
@@ -231,14 +230,21 @@ EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEd
                        "write its values over the other's");
   }
   const View view = resolve(edit.view, mesh);
-  PreparedEdit side = prepare_facing(edit, view, mesh, storage, transfer);
+  const CoverView shown = whole_view(view);
+  Stopwatch watch;
+  const ChartPlan plan = plan_chart(edit, shown, mesh, storage);
+  const TilePlan tiles = plan_tiles(edit, view, plan, transfer);
+  const double planned = watch.lap();
+  if (!tiles.tiles.empty()) return apply_in_tiles(edit, shown, plan, tiles, mesh, seams, storage);
+  PreparedEdit side = facing(edit, prepare_edit(edit, shown, mesh, storage, plan, transfer));
+  side.report.times.pull += planned;
   std::optional<PreparedEdit> other;  // before any push: both see what was there, and throw in time
   if (edit.mirror) {
     const View image = mirrored(view, static_cast<int>(edit.mirror->axis), edit.mirror->at);
     Edit opposite = edit;
     opposite.along[static_cast<int>(edit.mirror->axis)] *= -1.0F;
     try {
-      other = prepare_facing(opposite, image, mesh, storage, transfer);
+      other = facing(opposite, prepare_edit(opposite, image, mesh, storage, transfer));
     } catch (const InvalidInput& error) {
       throw InvalidInput(edit.path + ".mirror: on the other side, " + error.what());
     }

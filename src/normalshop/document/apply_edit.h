@@ -13,6 +13,10 @@ namespace normalshop {
 EditReport apply_edit(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
                       SurfaceCover& cover, StorageAtlas& storage, const TransferOptions& transfer);
 
+/// The maps as they are, for little: they share what nobody edits.
+std::vector<NormalMap> copies_of(const StorageAtlas& storage);
+std::vector<const NormalMap*> pointers_to(const std::vector<NormalMap>& maps);
+
 /// After the push of an edit in one view: keeps both sides of the seams together (SeamFit) that may
 /// lie among the texels which the edit in that region of the chart has changed.
 void fit_seams(const Mesh& mesh, std::span<const SeamEdge> seams, const ChartGrid& grid,

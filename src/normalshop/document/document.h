@@ -29,9 +29,10 @@ struct EditReport {
   int chart_width = 0;
   int chart_height = 0;
   float pixel = 0.0F;  ///< object units
-  /// The edit covers more texels than the largest chart has pixels: the finest take an interpolated
-  /// change.
-  bool coarser_than_texels = false;
+  /// Of the finest texels along a pixel's side. Above 1 where they are more than the largest chart
+  /// has pixels, and take an interpolated change.
+  float texels_per_pixel = 0.0F;
+  int tiles = 1;      ///< that the chart was cut into
   int views = 0;      ///< that the edit looked from; the chart above is that of the largest
   PushResult pushed;  ///< of a mirrored edit both sides' one after the other: overlaps count twice
   std::size_t colors_changed = 0;  ///< texels (of a picture: pixels) of the colours, likewise
@@ -41,6 +42,8 @@ struct EditReport {
   TransferOptions transfer = {};
   /// Texels that the edit reached and the update did not write: 0 with Update::Gather.
   std::size_t lost = 0;
+
+  bool coarser_than_texels() const { return texels_per_pixel > 1.01F; }
 };
 
 class LiveEdit;

@@ -109,6 +109,9 @@ class EditOperator {
   virtual float looks_back() const { return std::numeric_limits<float>::infinity(); }
   /// Object units read beyond the extent, in a chart whose pixels are that long.
   virtual float reach(float /*pixel*/) const { return 0.0F; }
+  /// Does each pixel of its result depend on nothing but the strokes and what lies within reach()?
+  /// Then a view may be cut into tiles.
+  virtual bool is_local() const { return false; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.
   virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
   /// An operator that moves_colors() writes what they become, and returns where.

@@ -25,11 +25,6 @@ Extent view_extent(const View& view) {
           Vec2f(0.5F * view.width, 0.5F * view.height)};
 }
 
-CoverView whole(const View& view) {
-  const Extent all = view_extent(view);
-  return {view, all.low, all.high, nullptr};
-}
-
 /// A box in the view that holds the whole model.
 Extent model_extent(const Bounds& bounds, const View& view) {
   const Vec3f middle = view.to_chart(bounds.center() - view.center);
@@ -181,32 +176,17 @@ void open_source(const Edit& edit, OpenChart& open) {
   if (edit.operation->moves_colors() && !chart.albedo.empty()) extend(chart.weight, chart.albedo);
 }
 
-OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
-                     const StorageAtlas& storage, const TransferOptions& transfer) {
+/// The chart of that grid.
+OpenChart open_grid(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                    const StorageAtlas& storage, const TransferOptions& transfer,
+                    const ChartPlan& plan, const ChartGrid& grid) {
   Stopwatch watch;
-  const Bounds box = bounds(mesh);
-  const View& view = cover.view;
-  check_near_view(edit, view);
   OpenChart open;
-  open.place = find_place(edit, cover, box);
-  const Extent shown =
-      edit.window == ChartWindow::View
-          ? intersect(open.place.view, widened(open.place.model, 1e-3F * box.diagonal()))
-          : open.place.extent;
-  const CountedTexels counted =
-      edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
-  // What reads no details loses none to pixels that are longer than texels seen at an angle.
-  const bool facing = edit.window == ChartWindow::View && !edit.operation->reads() &&
-                      !edit.operation->picks() && !edit.operation->moves_colors();
-  const float texel = texel_pixel_size(mesh, storage, view, shown.low, shown.high, counted,
-                                       facing ? TexelLength::Facing : TexelLength::Seen);
-  open.chart = build_chart(edit, cover, mesh, storage,
-                           choose_grid(edit, view, shown, open.place.model, texel), box.diagonal(),
-                           transfer);
-  const ChartGrid& grid = open.chart.grid;
-  open.direction = direction_of(edit, view);
+  open.place = plan.place;
+  open.chart = build_chart(edit, cover, mesh, storage, grid, plan.model_size, transfer);
+  open.direction = direction_of(edit, cover.view);
   if (edit.mode == EditMode::Along) {
-    open.faces = limit_weight(open.chart, effective_options(edit.effective, box.diagonal()),
+    open.faces = limit_weight(open.chart, effective_options(edit.effective, plan.model_size),
                               open.direction.along, make_input(edit, grid, open.place).region);
   }
   EditReport& report = open.report;
@@ -215,12 +195,19 @@ OpenChart open_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
   report.chart_width = grid.width();
   report.chart_height = grid.height();
   report.pixel = grid.pixel;
-  report.coarser_than_texels = grid.pixel > 1.01F * texel;
+  report.texels_per_pixel = grid.pixel / plan.texel;
   report.times.pull = watch.lap();
   if (!open.faces) return open;
   open_source(edit, open);
   report.times.operate = watch.lap();
   return open;
+}
+
+OpenChart open_planned(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                       const StorageAtlas& storage, const TransferOptions& transfer,
+                       const ChartPlan& plan) {
+  return open_grid(edit, cover, mesh, storage, transfer, plan,
+                   choose_grid(edit, cover.view, plan.shown, plan.place.model, plan.texel));
 }
 
 /// Restores the curvature term in the change of the normals, or measures what that would do.
@@ -236,7 +223,7 @@ void bend(const EditingChart& chart, const std::optional<CurvatureTerm>& term,
   relief = term->convert(result.region, coverage, result.change);
 }
 
-PreparedEdit finish(const Edit& edit, OpenChart open) {
+PreparedEdit finish(const Edit& edit, OpenChart open, SurfaceCheck& check) {
   Stopwatch watch;
   PreparedEdit prepared;
   prepared.direction = open.direction;
@@ -246,7 +233,8 @@ PreparedEdit finish(const Edit& edit, OpenChart open) {
   EditingChart& chart = open.chart;
   // Strokes on the surface need no search for it; what a view shows of them may be its rim alone.
   if (edit.surface_strokes.empty()) {
-    check_on_surface(edit, input.strokes, chart, input.region, open.place.model);
+    check.look(input.strokes, chart, input.region);
+    if (open.own.empty()) check.demand(open.place.model);
   }
   std::optional<CurvatureTerm> term;
   if (bends(edit)) {
@@ -277,9 +265,41 @@ EffectiveOptions effective_options(const EffectiveAngles& angles, float model_si
   return options;
 }
 
+CoverView whole_view(const View& view) {
+  const Extent all = view_extent(view);
+  return {view, all.low, all.high, nullptr};
+}
+
+ChartPlan plan_chart(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                     const StorageAtlas& storage) {
+  const Bounds box = bounds(mesh);
+  const View& view = cover.view;
+  check_near_view(edit, view);
+  ChartPlan plan;
+  plan.model_size = box.diagonal();
+  plan.place = find_place(edit, cover, box);
+  plan.shown = edit.window == ChartWindow::View
+                   ? intersect(plan.place.view, widened(plan.place.model, 1e-3F * plan.model_size))
+                   : plan.place.extent;
+  const CountedTexels counted =
+      edit.operation->moves_colors() ? CountedTexels::All : CountedTexels::Normals;
+  // What reads no details loses none to pixels that are longer than texels seen at an angle.
+  const bool facing = edit.window == ChartWindow::View && !edit.operation->reads() &&
+                      !edit.operation->picks() && !edit.operation->moves_colors();
+  plan.texel = texel_pixel_size(mesh, storage, view, plan.shown.low, plan.shown.high, counted,
+                                facing ? TexelLength::Facing : TexelLength::Seen);
+  return plan;
+}
+
 OpenChart open_chart(const Edit& edit, const View& view, const Mesh& mesh,
                      const StorageAtlas& storage, const TransferOptions& transfer) {
-  return open_chart(edit, whole(view), mesh, storage, transfer);
+  Stopwatch watch;
+  const CoverView cover = whole_view(view);
+  const ChartPlan plan = plan_chart(edit, cover, mesh, storage);
+  const double planned = watch.lap();
+  OpenChart open = open_planned(edit, cover, mesh, storage, transfer, plan);
+  open.report.times.pull += planned;
+  return open;
 }
 
 void fail_averted(const Edit& edit) {
@@ -289,7 +309,9 @@ void fail_averted(const Edit& edit) {
 }
 
 OperatorInput operator_input(const Edit& edit, const OpenChart& open) {
+  constexpr int kernel = 4;  // pixels around a point that push may read
   OperatorInput input = make_input(edit, open.chart.grid, open.place);
+  if (!open.own.empty()) input.region = intersect(input.region, grow(open.own, kernel));
   const ChartSource& source = open.source;
   const EditOperator& operation = *edit.operation;
   if (operation.reads()) input.source = source.slopes;
@@ -325,13 +347,33 @@ ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const Ope
 }
 
 PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& mesh,
+                          const StorageAtlas& storage, const ChartPlan& plan,
+                          const TransferOptions& transfer) {
+  SurfaceCheck check(edit, edit.strokes.size());
+  return finish(edit, open_planned(edit, cover, mesh, storage, transfer, plan), check);
+}
+
+PreparedEdit prepare_edit(const Edit& edit, const CoverView& cover, const Mesh& mesh,
                           const StorageAtlas& storage, const TransferOptions& transfer) {
-  return finish(edit, open_chart(edit, cover, mesh, storage, transfer));
+  Stopwatch watch;
+  const ChartPlan plan = plan_chart(edit, cover, mesh, storage);
+  const double planned = watch.lap();
+  PreparedEdit prepared = prepare_edit(edit, cover, mesh, storage, plan, transfer);
+  prepared.report.times.pull += planned;
+  return prepared;
+}
+
+PreparedEdit prepare_tile(const Edit& edit, const CoverView& view, const Mesh& mesh,
+                          const StorageAtlas& storage, const ChartPlan& plan, const ChartGrid& grid,
+                          const Rect& own, SurfaceCheck& check) {
+  OpenChart open = open_grid(edit, view, mesh, storage, {}, plan, grid);
+  open.own = own;
+  return finish(edit, std::move(open), check);
 }
 
 PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
                           const StorageAtlas& storage, const TransferOptions& transfer) {
-  return prepare_edit(edit, whole(view), mesh, storage, transfer);
+  return prepare_edit(edit, whole_view(view), mesh, storage, transfer);
 }
 
 }  // namespace normalshop

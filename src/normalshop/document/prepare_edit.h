@@ -3,6 +3,7 @@
 #include "normalshop/chart/cover.h"
 #include "normalshop/document/document.h"
 #include "normalshop/document/operate.h"
+#include "normalshop/document/surface_check.h"
 
 namespace normalshop {
 
@@ -24,11 +25,26 @@ struct ChartSource {
   bool replaces = false;  ///< the result's coverage counts
 };
 
+/// What the chart of an edit in one view has to show.
+struct ChartPlan {
+  EditPlace place;
+  Extent shown;             ///< what the edit may change, or all of the view: Edit::window
+  float texel = 0.0F;       ///< object units: pixels of this length are as fine as the texels
+  float model_size = 0.0F;  ///< likewise, across the whole model
+};
+/// Throws InvalidInput, naming the field, when strokes and model are apart.
+ChartPlan plan_chart(const Edit& edit, const CoverView& view, const Mesh& mesh,
+                     const StorageAtlas& storage);
+/// A view as a whole.
+CoverView whole_view(const View& view);
+
 /// A view's chart for an edit: pulled, and what the operator reads of it.
 struct OpenChart {
   EditingChart chart;
   EditPlace place;
   ChartSource source;
+  /// The pixels that this chart is made for, of one that is cut into tiles; else empty.
+  Rect own;
   EditDirection direction;  ///< in chart axes
   /// False: nothing that the view shows faces edit.along. Then there is no source.
   bool faces = true;
@@ -72,6 +88,16 @@ PreparedEdit prepare_edit(const Edit& edit, const View& view, const Mesh& mesh,
 /// An edit of the whole view, made in its part and on what it shows of the mesh.
 PreparedEdit prepare_edit(const Edit& edit, const CoverView& view, const Mesh& mesh,
                           const StorageAtlas& storage, const TransferOptions& transfer = {});
+/// The same with the chart planned.
+PreparedEdit prepare_edit(const Edit& edit, const CoverView& view, const Mesh& mesh,
+                          const StorageAtlas& storage, const ChartPlan& plan,
+                          const TransferOptions& transfer = {});
+
+/// A tile of a view that is cut: `grid` is the tile's with its margin on the view's lattice of
+/// pixels, `own` are its pixels that this tile is for. Looks with `check` instead of throwing.
+PreparedEdit prepare_tile(const Edit& edit, const CoverView& view, const Mesh& mesh,
+                          const StorageAtlas& storage, const ChartPlan& plan, const ChartGrid& grid,
+                          const Rect& own, SurfaceCheck& check);
 
 /// The effective chart that an edit asks for, on a model of that size.
 EffectiveOptions effective_options(const EffectiveAngles& angles, float model_size);

@@ -143,39 +143,62 @@ void check_near_view(const Edit& edit, const View& view) {
   }
 }
 
-void check_on_surface(const Edit& edit, const std::vector<Stroke>& strokes,
-                      const EditingChart& chart, const Rect& region, const Extent& model) {
-  const StrokeUse use = edit.operation->stroke_use();
+SurfaceCheck::SurfaceCheck(const Edit& edit, std::size_t strokes) : edit_(edit) {
+  for (std::size_t i = 0; i < strokes; ++i) {
+    met_.emplace_back(by_points() ? edit.strokes[i].size() : std::size_t{1}, false);
+  }
+}
+
+void SurfaceCheck::look(const std::vector<Stroke>& strokes, const EditingChart& chart,
+                        const Rect& region) {
+  const EditOperator& operation = *edit_.operation;
+  const StrokeUse use = operation.stroke_use();
   const Rect all = chart.weight.rect();
-  const Rect within = edit.operation->picks() ? intersect(region, all) : all;
-  for (std::size_t i = 0; i < strokes.size(); ++i) {
-    const std::string field = edit.path + ".strokes[" + std::to_string(i) + "]";
-    if (use == StrokeUse::Points) {
-      for (std::size_t j = 0; j < strokes[i].size(); ++j) {
-        const bool meets = edit.operation->picks()
-                               ? on_surface(chart, strokes[i][j].position, within)
-                               : copy_meets(chart, *edit.operation, edit.strokes[i][j]);
-        if (meets) continue;
-        fail_off_surface(field + "[" + std::to_string(j) + "]", model);
-      }
-    } else if (!path_meets(chart, strokes[i], use != StrokeUse::Path, within) &&
-               !(use == StrokeUse::Inside && inside_meets(chart, strokes[i]))) {
-      fail_off_surface(field, model);
+  const Rect within = operation.picks() ? intersect(region, all) : all;
+  const auto meets = [&](std::size_t i, std::size_t j) {
+    if (!by_points()) {
+      return path_meets(chart, strokes[i], use != StrokeUse::Path, within) ||
+             (use == StrokeUse::Inside && inside_meets(chart, strokes[i]));
+    }
+    return operation.picks() ? on_surface(chart, strokes[i][j].position, within)
+                             : copy_meets(chart, operation, edit_.strokes[i][j]);
+  };
+  for (std::size_t i = 0; i < met_.size(); ++i) {
+    for (std::size_t j = 0; j < met_[i].size(); ++j) met_[i][j] = met_[i][j] || meets(i, j);
+  }
+  any_ = any_ || (strokes.empty() && any_surface(chart, region));
+}
+
+void SurfaceCheck::demand(const Extent& model) const {
+  for (std::size_t i = 0; i < met_.size(); ++i) {
+    for (std::size_t j = 0; j < met_[i].size(); ++j) {
+      if (met_[i][j]) continue;
+      const std::string point = by_points() ? "[" + std::to_string(j) + "]" : "";
+      fail_off_surface(edit_.path + ".strokes[" + std::to_string(i) + "]" + point, model);
     }
   }
-  if (strokes.empty() && !any_surface(chart, region)) {
-    throw InvalidInput(edit.path +
+  if (met_.empty() && !any_) {
+    throw InvalidInput(edit_.path +
                        ".view must show surface that faces the viewer; \"direction\" points from "
                        "the surface to the viewer");
   }
 }
 
+void check_on_surface(const Edit& edit, const std::vector<Stroke>& strokes,
+                      const EditingChart& chart, const Rect& region, const Extent& model) {
+  SurfaceCheck check(edit, strokes.size());
+  check.look(strokes, chart, region);
+  check.demand(model);
+}
+
 Rect pixel_rect(const ChartGrid& grid, const Extent& extent) {
+  // On the lattice first, so that windows of it agree.
   const auto pixel = [](float x) { return static_cast<int>(std::clamp(x, -1e8F, 1e8F)); };
-  const Vec2f low = grid.to_pixel({extent.low.x(), extent.high.y()});
-  const Vec2f high = grid.to_pixel({extent.high.x(), extent.low.y()});
-  return {pixel(std::floor(low.x())), pixel(std::floor(low.y())), pixel(std::ceil(high.x())) + 1,
-          pixel(std::ceil(high.y())) + 1};
+  const auto at = [&](float units) { return units / grid.pixel - 0.5F; };
+  const Rect lattice{pixel(std::floor(at(extent.low.x()))), pixel(std::floor(at(-extent.high.y()))),
+                     pixel(std::ceil(at(extent.high.x()))) + 1,
+                     pixel(std::ceil(at(-extent.low.y()))) + 1};
+  return shift(lattice, -grid.window.x0, -grid.window.y0);
 }
 
 }  // namespace normalshop

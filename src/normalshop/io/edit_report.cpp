@@ -127,10 +127,12 @@ Value sets_value(const EditJob& job) {
 void note_edit(const Edit& edit, const EditReport& report, std::vector<std::string>& notes) {
   note_relief(edit, report.relief, notes);
   note_shared(edit, report.pushed, notes);
-  if (report.coarser_than_texels) {
+  if (report.coarser_than_texels()) {
     notes.push_back(edit.path +
-                    ": covers more texels than an editing chart has pixels, so it "
-                    "comes out softer than the map could show; edit from nearer");
+                    ": covers more texels than an editing chart has pixels, which are " +
+                    std::to_string(std::lround(100.0F * (report.texels_per_pixel - 1.0F))) +
+                    " % longer than the finest texels, so it comes out softer than the map could "
+                    "show; edit from nearer");
   }
 }
 
@@ -148,7 +150,9 @@ Value edits_value(std::span<const Edit> log, std::span<const EditReport> reports
                                 {"views", e.views},
                                 {"chart", Value::Array{e.chart_width, e.chart_height}},
                                 {"pixel", e.pixel},
-                                {"coarser_than_texels", e.coarser_than_texels},
+                                {"tiles", e.tiles},
+                                {"coarser_than_texels", e.coarser_than_texels()},
+                                {"texels_per_pixel", e.texels_per_pixel},
                                 {"seconds", Value::Object{{"pull", e.times.pull},
                                                           {"operator", e.times.operate},
                                                           {"push", e.times.push}}}});

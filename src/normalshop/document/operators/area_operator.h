@@ -47,7 +47,7 @@ class AreaEdit : public EditOperator {
 };
 
 /// An edit that rewrites the slopes in an area, each pixel by what the tool makes of it and how far
-/// the area's mask says. `Tool` has Options, name, summary and
+/// the area's mask says. `Tool` has Options, name, summary, is_local (EditOperator) and
 /// apply(input, mask, target, region, options), which fills target in region.
 template <class Tool>
 class AreaOperator : public AreaEdit<AreaEditOptions<typename Tool::Options>> {
@@ -57,6 +57,7 @@ class AreaOperator : public AreaEdit<AreaEditOptions<typename Tool::Options>> {
 
   std::string_view name() const override { return Tool::name; }
   bool reads() const override { return true; }
+  bool is_local() const override { return Tool::is_local; }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     const Options scaled = scale_lengths(this->options_, 1.0F / input.pixel);

@@ -12,6 +12,7 @@ struct NoOptions {
 
 struct BalanceTool {
   using Options = NoOptions;
+  static constexpr bool is_local = false;
   static constexpr std::string_view name = "balance";
   static constexpr std::string_view summary =
       "Takes the mean slope away, so that the area is level as a whole";

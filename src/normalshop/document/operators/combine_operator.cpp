@@ -28,6 +28,7 @@ class CombineOperator : public LaidImageEdit<CombineEditOptions> {
   std::string_view name() const override { return "combine"; }
   bool reads() const override { return options_.model != CombineModel::Linear; }
   bool reads_base() const override { return options_.model == CombineModel::Rotation; }
+  bool is_local() const override { return true; }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {
     const CombineEditOptions scaled = scaled_options(input);

@@ -39,6 +39,7 @@ class ConvolveOperator : public AreaEdit<ConvolveEditOptions> {
   std::string_view name() const override { return "convolve"; }
   std::string_view asset_field() const override { return "kernel"; }
   bool reads() const override { return true; }
+  bool is_local() const override { return true; }
 
   void load(Assets& assets) override {
     kernel_ = assets.kernel(options_.kernel);

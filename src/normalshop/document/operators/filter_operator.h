@@ -19,6 +19,7 @@ class FilterOperator : public AreaEdit<AreaEditOptions<typename Filter::Options>
   }
   std::string_view name() const override { return Filter::name; }
   bool reads() const override { return true; }
+  bool is_local() const override { return true; }
   float reach(float /*pixel*/) const override { return Filter::reach(this->options_); }
   float removes_finer(float pixel) const override {
     if constexpr (requires { Filter::low_pass_sigma(this->options_); }) {

@@ -22,6 +22,7 @@ struct FlattenEditOptions {
 
 struct FlattenTool {
   using Options = FlattenEditOptions;
+  static constexpr bool is_local = true;
   static constexpr std::string_view name = "flatten";
   static constexpr std::string_view summary =
       "Brings the slopes to those of a plane, or of the base surface";

@@ -23,6 +23,7 @@ struct PaintEditOptions {
 
 struct PaintTool {
   using Options = PaintEditOptions;
+  static constexpr bool is_local = true;
   static constexpr std::string_view name = "paint";
   static constexpr std::string_view summary = "Turns normals towards one direction";
   static void apply(const OperatorInput& input, MaskView mask, SlopeSpan target, Rect region,

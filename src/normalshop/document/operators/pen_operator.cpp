@@ -20,6 +20,7 @@ class PenOperator : public EditOperator {
   std::string_view name() const override { return "pen"; }
   Value options() const override { return options_value(options_); }
   bool reads() const override { return false; }
+  bool is_local() const override { return true; }
   StrokeUse stroke_use() const override {
     return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
   }

@@ -14,6 +14,7 @@ void check_scales(const FieldReader& options);
 class PlacedOperator : public EditOperator {
  public:
   bool reads() const override { return false; }
+  bool is_local() const override { return true; }
   StrokeUse stroke_use() const override { return StrokeUse::Points; }
 
   void check_strokes(const std::vector<UnitStroke>& strokes,

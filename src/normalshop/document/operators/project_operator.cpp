@@ -24,6 +24,7 @@ struct ProjectEditOptions {
 
 struct ProjectTool {
   using Options = ProjectEditOptions;
+  static constexpr bool is_local = false;
   static constexpr std::string_view name = "project";
   static constexpr std::string_view summary =
       "Takes the curl away: the nearest slopes that are those of a surface";

@@ -8,6 +8,7 @@ namespace {
 
 struct RotateTool {
   using Options = RotateNormalsOptions;
+  static constexpr bool is_local = true;
   static constexpr std::string_view name = "rotate";
   static constexpr std::string_view summary = "Turns normals about an axis";
   static void apply(const OperatorInput& input, MaskView mask, SlopeSpan target, Rect region,

@@ -36,6 +36,7 @@ class TransplantOperator : public LaidImageEdit<TransplantEditOptions> {
   using LaidImageEdit::LaidImageEdit;
   std::string_view name() const override { return "transplant"; }
   bool reads() const override { return true; }
+  bool is_local() const override { return true; }
   float reach(float /*pixel*/) const override { return 4.0F * options_.sigma; }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {

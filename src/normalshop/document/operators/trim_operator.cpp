@@ -34,6 +34,7 @@ class TrimOperator : public EditOperator {
   void load(Assets& assets) override { pattern_ = assets.patch(options_.pattern); }
   std::string_view asset_field() const override { return "pattern"; }
   bool reads() const override { return false; }
+  bool is_local() const override { return true; }
   StrokeUse stroke_use() const override {
     return options_.closed ? StrokeUse::Loop : StrokeUse::Path;
   }
