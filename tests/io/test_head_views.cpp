@@ -93,5 +93,39 @@ TEST(HeadViews, KeepTheDetailsUnderFiftyStrokes) {
   EXPECT_LE(left / static_cast<double>(changed), 0.05);
 }
 
+// Rims, depth steps and seams of the face, and tiles of 256 to 384 pixels.
+TEST(HeadViews, CutIntoTilesAreThoseOfOneChart) {
+  const std::optional<OpenedDocument> head = open_head(512);
+  if (!head) GTEST_SKIP() << "the real data is not on this machine";
+  FakeAssets assets;
+  for (const std::string& fields :
+       {std::string(R"("operator": "sharpen", "options": {"sigma": 0.05})"),
+        std::string(R"("operator": "pen", "options": {"width": 0.3, "height": 0.1},
+                        "strokes": [[[-2, -3], [-1, 2], [1, 3], [0, -3], [3, -2]]])")}) {
+    SCOPED_TRACE(fields);
+    const Edit edit =
+        parse_recipe(R"({"version": 1, "edits": [{"view": "front", )" + fields + "}]}", "r.json",
+                     assets)
+            .edits.at(0);
+    Document whole = head->document;
+    Document tiled = head->document;
+    EXPECT_EQ(whole.apply(edit).tiles, 1);
+    EXPECT_GT(tiled.apply(edit, {.largest_side = 512}).tiles, 8);
+    const NormalMap& a = whole.storage().sets[0].normals;
+    const NormalMap& b = tiled.storage().sets[0].normals;
+    int reached = 0;
+    float largest = 0.0F;
+    for (int y = 0; y < a.height(); ++y) {
+      for (int x = 0; x < a.width(); ++x) {
+        if (a.edited(x, y) != b.edited(x, y)) ++reached;
+        largest = std::max(largest, angle_degrees(a.normal(x, y), b.normal(x, y)));
+      }
+    }
+    EXPECT_GT(a.edited_count(), 10000U);
+    EXPECT_EQ(reached, 0);
+    EXPECT_LT(largest, 0.02F);
+  }
+}
+
 }  // namespace
 }  // namespace normalshop::test

@@ -26,6 +26,13 @@ namespace {
 std::uint32_t decoding_triangle(const GutterTexel& g) { return g.owner; }
 std::uint32_t decoding_triangle(const SharedTexel& s) { return s.triangle; }
 
+const std::vector<GutterTexel>& list_of(const TexelMap& texels, const GutterTexel&) {
+  return texels.gutter();
+}
+const std::vector<SharedTexel>& list_of(const TexelMap& texels, const SharedTexel&) {
+  return texels.shared();
+}
+
 }  // namespace
 
 template <class Item>
@@ -35,6 +42,7 @@ void NormalEditor::collect(const TexelBatch& batch, const PerLane<const Item*>& 
     if (!batch.acts(i)) continue;
     const Item& item = *items[static_cast<std::size_t>(i)];
     out.push_back(write_of(batch, i, item.texel, decoding_triangle(item)));
+    out.back().rank = static_cast<std::uint32_t>(1 + (&item - list_of(texels_, item).data()));
   }
 }
 

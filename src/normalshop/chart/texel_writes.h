@@ -19,6 +19,7 @@ struct TexelWrite {
   float turn = 0.0F;    ///< of normals: 1 - cos of the angle between before and after
   float facing = 0.0F;  ///< of normals: cosine between the base normal and the viewing direction
   std::uint32_t triangle = 0;  ///< of normals: the one whose frame decodes the texel
+  std::uint32_t rank = 0;  ///< of normals of listed texels: 1 and on, as they stand in their list
 };
 
 /// Index of a texel as TexelWrite has it.

@@ -6,7 +6,6 @@ namespace normalshop {
 
 struct TiledPush::Target {
   static constexpr auto facing = NormalEditor::Facing::Left;
-  const Image<std::uint32_t>& owner;
   NormalMap& after;
   Tiles& tiles;
 
@@ -15,15 +14,14 @@ struct TiledPush::Target {
                                                 x / side)];
     if (!tile) tile = std::make_unique<Tile>();
     const std::size_t i = NormalMap::index_in_tile(x, y);
-    const bool by_owner = write.triangle == owner(x, y);
     const float weight = tile->weight[i];
-    const bool takes = by_owner && !tile->by_owner[i] ? !outweighs(weight, write.weight)
-                                                      : outweighs(write.weight, weight);
+    const bool takes = write.rank < tile->rank[i] ? !outweighs(weight, write.weight)
+                                                  : outweighs(write.weight, weight);
     if (weight > 0.0F && !takes) return;
     after.set_normal(x, y, write.value);
     tile->weight[i] = write.weight;
     tile->turn[i] = write.turn;
-    tile->by_owner[i] = by_owner;
+    tile->rank[i] = write.rank;
   }
 };
 
@@ -41,7 +39,7 @@ void TiledPush::add(const Mesh& mesh, const EditingChart& chart, const ChartEdit
   part.own = own;
   const EditSampler sampler(chart, part);
   for (std::size_t i = 0; i < storage.sets.size(); ++i) {
-    Target target{storage.sets[i].texels.owner(), after_[i], sets_[i]};
+    Target target{after_[i], sets_[i]};
     SetPush push(mesh, sampler, storage.sets[i], static_cast<std::uint32_t>(i), target);
     visited_ += push.run().visited;
   }

@@ -15,7 +15,7 @@ namespace normalshop {
 /// write is what push() would write with the chart in one piece, as far as charts and changes are
 /// the same: a texel is edited by the part in whose own pixels its surface point lies. Of parts
 /// that both edit one (texels that triangles share, and the gutter) the one with the larger weight
-/// decides, of equal ones the texel's owner, then the first part.
+/// decides, of equal ones the texel's owner, then the first that TexelMap lists.
 class TiledPush {
  public:
   explicit TiledPush(const StorageAtlas& storage);
@@ -32,7 +32,7 @@ class TiledPush {
   struct Tile {
     std::array<float, side * side> weight{};  ///< of the effective chart; 0: nothing
     std::array<float, side * side> turn{};
-    std::array<bool, side * side> by_owner{};
+    std::array<std::uint32_t, side * side> rank{};
   };
   struct Target;
   using Tiles = std::vector<std::unique_ptr<Tile>>;
