@@ -193,8 +193,7 @@ void compare(const Scene& scene, int side) {
       "| transfer | update | chart, ms | update, ms | written, M | lost, M | error | p99 | ");
   std::printf("seams | p99 |\n");
   const SeamState seams(scene);
-  EffectiveOptions effective;
-  effective.step_falloff = 0.004F * bounds(scene.mesh).diagonal();
+  const EffectiveOptions effective = effective_on(bounds(scene.mesh).diagonal());
   for (const Transfer transfer : {Transfer::Triangle, Transfer::Point}) {
     EditingChart chart;
     Rasterizer rasterizer;

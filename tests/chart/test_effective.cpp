@@ -66,7 +66,7 @@ TEST(Effective, touching_surfaces_are_no_step) {
   const StorageAtlas storage = storage_of(mesh, flat_normal_map(64, 64, CodeType::U8));
   const EditingChart chart = chart_from(mesh, storage, {0, 0, 1}, 200);
   Image<std::uint8_t> steps;
-  find_depth_steps(chart, steps);
+  find_depth_steps(chart, 0.0F, steps);
   EXPECT_EQ(std::count(steps.data(), steps.data() + steps.size(), 1), 0);
 }
 

@@ -2,6 +2,7 @@
 #include "support/chart_bijection.h"
 #include "support/data.h"
 #include "support/many_strokes.h"
+#include "support/step_agreement.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/chart/cover.h"
@@ -31,7 +32,7 @@ TEST(HeadViews, UpdateEveryTexelOfTheirEffectiveChartsAndNoOther) {
   const StorageAtlas& storage = head->document.storage();
   CoverOptions options;
   options.views = 20;
-  options.effective.step_falloff = 0.004F * bounds(mesh).diagonal();
+  options.effective = effective_on(bounds(mesh).diagonal());
   Bijection all;
   int views = 0;
   for (const CoverView& cover : cover_surface(mesh, options)) {
@@ -114,7 +115,7 @@ TEST(HeadViews, CutIntoTilesAreThoseOfOneChart) {
     const NormalMap& a = whole.storage().sets[0].normals;
     const NormalMap& b = tiled.storage().sets[0].normals;
     int reached = 0;
-    float largest = 0.0F;
+    double largest = 0.0;
     for (int y = 0; y < a.height(); ++y) {
       for (int x = 0; x < a.width(); ++x) {
         if (a.edited(x, y) != b.edited(x, y)) ++reached;
@@ -123,8 +124,24 @@ TEST(HeadViews, CutIntoTilesAreThoseOfOneChart) {
     }
     EXPECT_GT(a.edited_count(), 10000U);
     EXPECT_EQ(reached, 0);
-    EXPECT_LT(largest, 0.02F);
+    EXPECT_LT(largest, 0.02);
   }
+}
+
+TEST(HeadViews, FadeOutAtTheSameStepsAtTwoResolutions) {
+  const std::optional<OpenedDocument> head = open_head(512);
+  if (!head) GTEST_SKIP() << "the real data is not on this machine";
+  const Mesh& mesh = head->document.mesh();
+  const EffectiveOptions options = effective_on(bounds(mesh).diagonal());
+  const View view = resolve(NamedView::Front, mesh);
+  const ChartGrid grid = make_grid(view, 0.008F);
+  const StepAgreement steps = step_agreement(mesh, grid, options.least_step);
+  const WeightAgreement weights = weight_agreement(mesh, grid, options);
+  EXPECT_GT(steps.coarse, 5000);
+  EXPECT_LT(steps.coarse_only, steps.coarse / 20);
+  EXPECT_LT(steps.fine_only, steps.fine / 8);
+  EXPECT_LT(weights.far, weights.pixels / 250);
+  EXPECT_LT(weights.mean, 0.005);
 }
 
 }  // namespace

@@ -25,6 +25,12 @@ struct PixelRun {
 
 enum class Neighbour { Right, Below };
 
+/// Of a chart.
+struct StepScale {
+  float inverse;  ///< pixels per object unit
+  float least;    ///< of a step, pixels
+};
+
 }  // namespace normalshop
 #endif
 
@@ -50,7 +56,7 @@ HWY_INLINE Rise rise_of(const Vec3f* normals, Neighbour neighbour) {
 
 /// Is there a depth step between two neighbouring pixels that see different triangles?
 HWY_INLINE hn::Mask<D> steps_between(const PixelRun& a, const PixelRun& b, std::size_t i,
-                                     Neighbour neighbour, float inverse) {
+                                     Neighbour neighbour, const StepScale& scale) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   const auto same = hn::RebindMask(d, hn::Eq(hn::LoadU(du, a.ids + i), hn::LoadU(du, b.ids + i)));
@@ -62,17 +68,20 @@ HWY_INLINE hn::Mask<D> steps_between(const PixelRun& a, const PixelRun& b, std::
   const Rise r0 = rise_of(a.normals + i, neighbour);
   const Rise r1 = rise_of(b.normals + i, neighbour);
   const V expected = hn::Mul(hn::Set(d, 0.5F), hn::Add(r0.step, r1.step));
-  const V off = hn::Abs(hn::Sub(hn::Mul(hn::Sub(z1, z0), hn::Set(d, inverse)), expected));
-  const auto deep = hn::Gt(off, hn::Add(hn::Set(d, 2.0F), hn::Abs(expected)));
+  const V off = hn::Abs(hn::Sub(hn::Mul(hn::Sub(z1, z0), hn::Set(d, scale.inverse)), expected));
+  const V steepness = hn::Abs(expected);
+  const V flat = hn::Sub(hn::Set(d, 1.0F), hn::Mul(hn::Set(d, 0.5F), steepness));
+  const V least = hn::Max(hn::Set(d, 2.0F), hn::Mul(hn::Set(d, scale.least), flat));
+  const auto deep = hn::Gt(off, hn::Add(least, steepness));
   const auto turned = hn::Xor(r0.front, r1.front);
   return hn::And(hn::AndNot(same, seen), hn::Or(deep, turned));
 }
 
-void mark_steps(const PixelRun& a, const PixelRun& b, int count, Neighbour neighbour, float inverse,
-                std::uint8_t* out_a, std::uint8_t* out_b) {
+void mark_steps(const PixelRun& a, const PixelRun& b, int count, Neighbour neighbour,
+                const StepScale& scale, std::uint8_t* out_a, std::uint8_t* out_b) {
   const D d;
   const auto mark = [&](std::size_t i) {
-    const auto steps = steps_between(a, b, i, neighbour, inverse);
+    const auto steps = steps_between(a, b, i, neighbour, scale);
     if (HWY_LIKELY(hn::AllFalse(d, steps))) return;
     std::array<float, lane_padding> found;
     hn::StoreU(hn::IfThenElseZero(steps, hn::Set(d, 1.0F)), d, found.data());
@@ -123,17 +132,17 @@ class ShortRow {
 
 /// Marks the steps between the pixels of `a` and their neighbours, those of `b`, in both rows that
 /// are not null.
-void mark(const PixelRun& a, const PixelRun& b, int count, Neighbour neighbour, float inverse,
-          std::uint8_t* out_a, std::uint8_t* out_b) {
+void mark(const PixelRun& a, const PixelRun& b, int count, Neighbour neighbour,
+          const StepScale& scale, std::uint8_t* out_a, std::uint8_t* out_b) {
   if (count >= lane_room) {
-    HWY_DYNAMIC_DISPATCH(mark_steps)(a, b, count, neighbour, inverse, out_a, out_b);
+    HWY_DYNAMIC_DISPATCH(mark_steps)(a, b, count, neighbour, scale, out_a, out_b);
     return;
   }
   const ShortRow padded_a(a, count);
   const ShortRow padded_b(b, count);
   std::array<std::uint8_t, lane_room> marks{};
   HWY_DYNAMIC_DISPATCH(mark_steps)
-  (padded_a.run(), padded_b.run(), lane_room, neighbour, inverse, marks.data(), nullptr);
+  (padded_a.run(), padded_b.run(), lane_room, neighbour, scale, marks.data(), nullptr);
   for (int i = 0; i < count; ++i) {
     if (marks[static_cast<std::size_t>(i)] == 0) continue;
     if (out_a != nullptr) out_a[i] = 1;
@@ -142,9 +151,9 @@ void mark(const PixelRun& a, const PixelRun& b, int count, Neighbour neighbour, 
 }
 
 /// Depth steps of the rows from `first` to `last`.
-void find_in_rows(const EditingChart& chart, int first, int last, Image<std::uint8_t>& steps) {
+void find_in_rows(const EditingChart& chart, const StepScale& scale, int first, int last,
+                  Image<std::uint8_t>& steps) {
   const int width = steps.width();
-  const float inverse = 1.0F / chart.grid.pixel;
   const auto run = [&](int y, int x) {
     return PixelRun{chart.ids.triangle.row(y) + x, chart.ids.depth.row(y) + x,
                     chart.base_normal.row(y) + x};
@@ -153,21 +162,24 @@ void find_in_rows(const EditingChart& chart, int first, int last, Image<std::uin
   for (int y = std::max(first - 1, 0); y < std::min(last, steps.height()); ++y) {
     std::uint8_t* here = y >= first ? steps.row(y) : nullptr;
     if (here != nullptr) {
-      mark(run(y, 0), run(y, 1), width - 1, Neighbour::Right, inverse, here, here + 1);
+      mark(run(y, 0), run(y, 1), width - 1, Neighbour::Right, scale, here, here + 1);
     }
     if (y + 1 == steps.height()) break;
     std::uint8_t* below = y + 1 < last ? steps.row(y + 1) : nullptr;
-    mark(run(y, 0), run(y + 1, 0), width, Neighbour::Below, inverse, here, below);
+    mark(run(y, 0), run(y + 1, 0), width, Neighbour::Below, scale, here, below);
   }
 }
 
 }  // namespace
 
-void find_depth_steps(const EditingChart& chart, Image<std::uint8_t>& steps) {
+void find_depth_steps(const EditingChart& chart, float least, Image<std::uint8_t>& steps) {
+  constexpr float least_pixels = 2.0F;
+  const float inverse = 1.0F / chart.grid.pixel;
+  const StepScale scale{inverse, std::max(least_pixels, least * inverse)};
   steps.resize(chart.grid.width(), chart.grid.height());
   parallel_for(static_cast<std::size_t>(chart.grid.height()), 64,
                [&](std::size_t begin, std::size_t end) {
-                 find_in_rows(chart, static_cast<int>(begin), static_cast<int>(end), steps);
+                 find_in_rows(chart, scale, static_cast<int>(begin), static_cast<int>(end), steps);
                });
 }
 

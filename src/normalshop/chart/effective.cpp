@@ -27,12 +27,19 @@ FacingWeight::FacingWeight(const EffectiveOptions& options)
 
 float FacingWeight::operator()(float cosine) const { return smoothstep(low_, high_, cosine); }
 
+EffectiveOptions effective_on(float model_size) {
+  EffectiveOptions options;
+  options.least_step = 5e-4F * model_size;
+  options.step_falloff = 0.004F * model_size;
+  return options;
+}
+
 void compute_weight(EditingChart& chart, const EffectiveOptions& options) {
   assert(options.step_falloff >= 0.0F);
   const int width = chart.grid.width();
   assert(chart.base_normal.width() == width && chart.base_normal.height() == chart.grid.height());
   Image<std::uint8_t> steps;
-  find_depth_steps(chart, steps);
+  find_depth_steps(chart, options.least_step, steps);
   const float falloff = std::max(2.0F, options.step_falloff / chart.grid.pixel);
   const int limit = static_cast<int>(std::ceil(falloff)) + 1;
   const DistanceRows across(steps, limit);

@@ -257,11 +257,9 @@ PreparedEdit finish(const Edit& edit, OpenChart open, SurfaceCheck& check) {
 }  // namespace
 
 EffectiveOptions effective_options(const EffectiveAngles& angles, float model_size) {
-  constexpr float step_falloff_share = 0.004F;  // of the model's size, from depth steps on
-  EffectiveOptions options;
+  EffectiveOptions options = effective_on(model_size);
   options.full_angle = angles.full;
   options.zero_angle = angles.zero;
-  options.step_falloff = step_falloff_share * model_size;
   return options;
 }
 
