@@ -24,6 +24,7 @@ struct RenderFlags {
   std::string facing;
   float width = 0.0F;
   std::string style = "lit";
+  std::string angles;
   std::string resolution = "1200x1200";
   bool json = false;
 };
@@ -39,6 +40,18 @@ void parse_resolution(const std::string& text, RenderOptions& options) {
   throw WrongUse("--resolution", "must be WxH with sides from 1 to 16384, not \"" + text + "\"");
 }
 
+void parse_angles(const std::string& text, RenderOptions& options) {
+  int read = 0;
+  const int fields =
+      std::sscanf(text.c_str(), "%f,%f%n", &options.full_angle, &options.zero_angle, &read);
+  if (fields == 2 && static_cast<std::size_t>(read) == text.size() && options.full_angle >= 0.0F &&
+      options.full_angle < options.zero_angle && options.zero_angle <= 90.0F) {
+    return;
+  }
+  throw WrongUse("--effective",
+                 "must be two angles FULL,ZERO with 0 <= FULL < ZERO <= 90, not \"" + text + "\"");
+}
+
 ViewSpec choose_view(const RenderFlags& flags) {
   if (!flags.facing.empty()) {
     if (!(flags.width > 0.0F)) throw WrongUse("--facing", "needs --width");
@@ -51,6 +64,7 @@ void run_render(const RenderFlags& flags) {
   RenderOptions options;
   parse_resolution(flags.resolution, options);
   from_name(flags.style, options.style);
+  if (!flags.angles.empty()) parse_angles(flags.angles, options);
   if (!flags.light.empty()) options.light = parse_vector(flags.light, "--light");
   if (options.light.isZero()) throw WrongUse("--light", "must not be 0,0,0");
   const ViewSpec spec = choose_view(flags);
@@ -90,8 +104,11 @@ void add_render_verb(CommandLine& program) {
   verb.takes("--light", flags.light,
              "Direction x,y,z towards the light: x right, y up, z towards the viewer");
   verb.takes("--style", flags.style, "What to show")
-      .one_of({"lit", "normals", "albedo", "weight", "charts"})
+      .one_of({"lit", "normals", "albedo", "weight", "effective", "charts"})
       .shows_default();
+  verb.takes("--effective", flags.angles,
+             "Angles FULL,ZERO of an edit's \"effective\", for the styles weight and effective "
+             "(60,75 unless given)");
   verb.takes("--resolution", flags.resolution, "WxH in pixels").shows_default();
   verb.flag("--json", flags.json, "Print what was written as JSON");
 }

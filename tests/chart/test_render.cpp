@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "normalshop/chart/render.h"
+#include "normalshop/core/error.h"
 
 namespace normalshop {
 namespace {
@@ -55,6 +56,46 @@ TEST(Render, weights_do_not_depend_on_bands) {
     for (std::size_t i = 0; i < truth.size(); ++i) {
       EXPECT_NEAR(found[i], truth[i], 0.05F * truth[i]) << row << ": " << i;
     }
+  }
+}
+
+/// The mean colour of a part of the terrace, seen from `direction`.
+Vec3f mean_color(const Vec3f& direction, const Vec3f& center, const RenderOptions& options) {
+  const Mesh mesh = terrace();
+  const StorageAtlas storage = storage_of(mesh, flat_normal_map(64, 64, CodeType::U8));
+  const View view = make_view(direction, {0, 1, 0}, center, 0.004F, 0.004F);
+  const ColorImage picture = render(mesh, storage, view, options);
+  Vec3f sum = Vec3f::Zero();
+  for (std::size_t i = 0; i < picture.size(); ++i) sum += picture.data()[i];
+  return sum / static_cast<float>(picture.size());
+}
+
+TEST(Render, tints_what_an_edit_reaches_and_what_keeps_it_from_the_rest) {
+  RenderOptions options;
+  options.width = options.height = 8;
+  options.style = RenderStyle::Effective;
+  const Vec3f acts = mean_color({0, 0, 1}, {0.5F, 0.8F, 0.0F}, options);
+  EXPECT_GT(acts.y(), 1.5F * std::max(acts.x(), acts.z()));
+  const Vec3f step = mean_color({0, 0, 1}, {0.5F, 0.501F, 0.0F}, options);
+  EXPECT_GT(step.z(), 1.5F * std::max(step.x(), step.y()));
+  const Vec3f tilted(0.0F, std::sin(1.4F), std::cos(1.4F));  // 80 degrees
+  const Vec3f averted = mean_color(tilted, {0.5F, 0.8F, 0.0F}, options);
+  EXPECT_GT(averted.x(), 1.5F * std::max(averted.y(), averted.z()));
+  options.full_angle = 85.0F;
+  options.zero_angle = 90.0F;
+  const Vec3f allowed = mean_color(tilted, {0.5F, 0.8F, 0.0F}, options);
+  EXPECT_GT(allowed.y(), 1.5F * std::max(allowed.x(), allowed.z()));
+}
+
+TEST(Render, refuses_angles_that_are_no_range) {
+  const Mesh mesh = terrace();
+  const StorageAtlas storage = storage_of(mesh, flat_normal_map(8, 8, CodeType::U8));
+  const View view = make_view({0, 0, 1}, {0, 1, 0}, {0.5F, 0.5F, 0}, 1.0F, 1.0F);
+  for (const auto& [full, zero] : {std::pair{70.0F, 70.0F}, {-1.0F, 20.0F}, {60.0F, 91.0F}}) {
+    RenderOptions options;
+    options.full_angle = full;
+    options.zero_angle = zero;
+    EXPECT_THROW(render(mesh, storage, view, options), InvalidInput) << full;
   }
 }
 

@@ -284,7 +284,8 @@ TEST_F(Verbs, RenderDrawsEveryStyle) {
   RawImage color = wavy_map(size, 3, CodeType::U8);
   write_image(folder_ / "color.png", color);
   std::vector<Arguments> runs;
-  const std::vector<std::string> styles{"lit", "normals", "albedo", "weight", "charts"};
+  const std::vector<std::string> styles{"lit",    "normals",   "albedo",
+                                        "weight", "effective", "charts"};
   for (const std::string& style : styles) {
     runs.push_back({"render", path("square.obj"), "--normal-map", path("map.png"), "--albedo",
                     path("color.png"), "-o", path(style + ".png"), "--style", style, "--view",

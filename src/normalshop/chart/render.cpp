@@ -132,14 +132,16 @@ Vec3f chart_color(std::uint32_t chart) {
 }
 
 EffectiveOptions weight_options(const Scene& scene) {
-  EffectiveOptions effective;
-  effective.step_falloff = 0.004F * bounds(scene.mesh).diagonal();
+  EffectiveOptions effective = effective_on(bounds(scene.mesh).diagonal());
+  effective.full_angle = scene.options.full_angle;
+  effective.zero_angle = scene.options.zero_angle;
   return effective;
 }
 
 /// Rows of the picture above and below a band that its pixels depend on.
 int margin_rows(const Scene& scene) {
-  if (scene.options.style != RenderStyle::Weight) return 0;
+  const RenderStyle style = scene.options.style;
+  if (style != RenderStyle::Weight && style != RenderStyle::Effective) return 0;
   // A depth step lowers the weight within the falloff, which is at least 2 of the chart's pixels.
   const float rows = weight_options(scene).step_falloff / scene.pixel;
   return static_cast<int>(std::min(std::ceil(rows), 16384.0F)) + 2;
@@ -163,6 +165,28 @@ void paint_style(const Scene& scene, EditingChart& chart) {
         chart.albedo(x, y) =
             (1.0F - w) * Vec3f(0.30F, 0.27F, 0.27F) + w * Vec3f(0.16F, 0.62F, 0.22F);
       }
+    }
+  }
+}
+
+/// Tints what is lit by how far an edit would act, and what keeps it from that.
+void paint_effective(const Scene& scene, EditingChart& chart, ColorSpan lit) {
+  constexpr float opacity = 0.6F;
+  const Vec3f acts(0.25F, 1.3F, 0.4F);
+  const Vec3f averted(1.7F, 0.3F, 0.25F);
+  const Vec3f beside_step(0.3F, 0.65F, 2.2F);
+  const EffectiveOptions effective = weight_options(scene);
+  compute_weight(chart, effective);
+  const FacingWeight facing(effective);
+  for (int y = 0; y < chart.grid.height(); ++y) {
+    for (int x = 0; x < chart.grid.width(); ++x) {
+      if (chart.ids.triangle(x, y) == no_triangle) continue;
+      const float turned = facing(chart.base_normal(x, y).z());
+      const float weight = chart.weight(x, y);
+      const Vec3f tint =
+          weight * acts + (1.0F - turned) * averted + (turned - weight) * beside_step;
+      const float brightness = lit(x, y).dot(Vec3f(0.2126F, 0.7152F, 0.0722F));
+      lit(x, y) = (1.0F - opacity) * lit(x, y) + opacity * brightness * tint;
     }
   }
 }
@@ -192,6 +216,7 @@ void color_band(const Scene& scene, int y0, int y1, EditingChart& chart, ColorSp
   shading.lights = ShadeOptions::studio_lights(scene.options.light);
   shade(chart.normal, chart.albedo, enlarge(scene.occlusion, y0, y1, scene.samples),
         enlarge(scene.shadow, y0, y1, scene.samples), target, shading);
+  if (scene.options.style == RenderStyle::Effective) paint_effective(scene, chart, target);
 }
 
 /// Rows y0 to y1 of the picture.
@@ -233,6 +258,11 @@ ColorImage render(const Mesh& mesh, const StorageAtlas& storage, const View& vie
   }
   if (!options.light.allFinite() || options.light.isZero()) {
     throw InvalidInput("light must be three finite numbers, not all 0");
+  }
+  if (!(options.full_angle >= 0.0F && options.full_angle < options.zero_angle &&
+        options.zero_angle <= 90.0F)) {
+    throw InvalidInput(
+        "angles must be from 0 to 90 degrees, that of full strength below the other");
   }
   Scene scene{
       mesh, storage, options, fit(view, options.width, options.height), 0.0F, fewest_samples, {},
