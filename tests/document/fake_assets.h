@@ -8,8 +8,9 @@
 
 namespace normalshop::test {
 
-/// The patches "cone.png", "wave.png", which tiles sideways, and "slanted.png", a plane with fine
-/// waves; some kernels; and, for every text, one square letter of half an em around the origin.
+/// Masks, and the patches "cone.png", "wave.png", which tiles sideways, and "slanted.png", a plane
+/// with fine waves; some kernels; and, for every text, one square letter of half an em around the
+/// origin.
 class FakeAssets : public Assets {
  public:
   Patch patch(const std::string& file) override {
@@ -26,6 +27,15 @@ class FakeAssets : public Assets {
       }
     }
     return patch;
+  }
+  /// "left.png" is 1 in its left half, "grey.png" 0.5, "black.png" 0.
+  MaskImage mask(const std::string& file) override {
+    if (file == "grey.png") return {3, 2, 0.5F};
+    if (file == "black.png") return {4, 4, 0.0F};
+    if (file != "left.png") throw IoError(file + ": cannot be read: there is no such file");
+    MaskImage left(64, 16, 0.0F);
+    for (int y = 0; y < 16; ++y) std::fill_n(left.row(y), 32, 1.0F);
+    return left;
   }
   /// "blur.json", "edge.json", which has a sum of 0, "shift.json" (two pixels to the right), and
   /// "broken.json", which is none.

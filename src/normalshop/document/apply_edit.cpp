@@ -118,6 +118,7 @@ class SurfaceEdit {
     if (!prepared.faces) return;
     faces_ = true;
     Stopwatch watch;
+    limit(prepared);
     if (edit.strength > 0.0F) blend_.add(mesh_, prepared.chart, prepared.change(), storage_);
     prepared.report.times.push = watch.lap();
     normalshop::add(prepared.report, report);
@@ -129,6 +130,9 @@ class SurfaceEdit {
                          (edit.surface_strokes.empty() ? "faces a view" : "the strokes come near"));
     }
     if (!faces_) fail_averted(edit);
+    if (part_.weighs() && !weighs_) {
+      throw InvalidInput(edit.path + ".part.mask must be above 0 on some of the edited surface");
+    }
     Stopwatch watch;
     const std::vector<NormalMap> before = copies_of(storage_);
     report.pushed = blend_.write(storage_);
@@ -139,12 +143,25 @@ class SurfaceEdit {
   EditReport report;
 
  private:
+  /// To what the part's mask says.
+  void limit(PreparedEdit& prepared) {
+    if (!part_.weighs()) return;
+    const MaskImage weights = part_.weights(mesh_, prepared.chart);
+    multiply(weights, prepared.result);
+    const Rect& region = prepared.result.region;
+    for (int y = region.y0; y < region.y1 && !weighs_; ++y) {
+      const float* row = weights.row(y);
+      weighs_ = std::any_of(row + region.x0, row + region.x1, [](float w) { return w > 0.0F; });
+    }
+  }
+
   const Mesh& mesh_;
   StorageAtlas& storage_;
   PartMask part_;
   SurfaceBlend blend_;
-  bool shown_ = false;  // does any view show the part?
-  bool faces_ = false;  // does the edit's direction see any of the surface?
+  bool shown_ = false;   // does any view show the part?
+  bool faces_ = false;   // does the edit's direction see any of the surface?
+  bool weighs_ = false;  // does its mask let any of the edit through?
 };
 
 void check_transfer(const Edit& edit, const TransferOptions& transfer) {
@@ -155,9 +172,10 @@ void check_transfer(const Edit& edit, const TransferOptions& transfer) {
   }
 }
 
-EditReport apply_along_strokes(const Edit& edit, const Mesh& mesh, std::span<const SeamEdge> seams,
+EditReport apply_along_strokes(const Edit& given, const Mesh& mesh, std::span<const SeamEdge> seams,
                                StorageAtlas& storage) {
   Stopwatch watch;
+  const Edit edit = with_feather_in_units(given, mesh, storage);
   const std::vector<StrokeView> views = view_strokes(edit, mesh);
   if (views.empty()) {
     throw InvalidInput(edit.path +
@@ -175,10 +193,11 @@ EditReport apply_along_strokes(const Edit& edit, const Mesh& mesh, std::span<con
   return all.report;
 }
 
-EditReport apply_to_surface(const Edit& edit, const SurfaceView& surface, const Mesh& mesh,
+EditReport apply_to_surface(const Edit& given, const SurfaceView& surface, const Mesh& mesh,
                             std::span<const SeamEdge> seams, SurfaceCover& cover,
                             StorageAtlas& storage) {
   Stopwatch watch;
+  const Edit edit = with_feather_in_units(given, mesh, storage);
   const CoverOptions options{surface.views,
                              effective_options(edit.effective, bounds(mesh).diagonal())};
   if (cover.views.empty() || !(options == cover.options)) {

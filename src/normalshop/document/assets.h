@@ -25,6 +25,8 @@ class Assets {
 
   /// A patch from a normal map file, with its alpha as opacity; names are relative to the recipe.
   virtual Patch patch(const std::string& file) = 0;
+  /// A grey picture, 0 to 1.
+  virtual MaskImage mask(const std::string& file) = 0;
   /// A kernel (kernel_text.h) from a JSON file.
   virtual Image<float> kernel(const std::string& file) = 0;
   /// The outlines of a text; an empty font name: the default font.

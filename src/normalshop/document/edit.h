@@ -29,9 +29,22 @@ struct FacingView {
 struct SurfaceView {
   int views = 0;  ///< at most; 0: chosen
 };
-/// The charts of the atlas (connected in it) that hold the surface points nearest to these.
+/// A picture in the atlas's layout: how far an edit acts, 0 to 1.
+struct AtlasMask {
+  std::string set;  ///< the texture set that it is for; empty: each
+  std::string file;
+  std::shared_ptr<const MaskImage> image;
+};
+/// What of a surface an edit is for.
 struct SurfacePart {
+  /// The charts of the atlas (connected in it) that hold the surface points nearest to these;
+  /// empty: all.
   std::vector<Vec3f> charts_at;
+  std::vector<AtlasMask> masks;  ///< empty: all; texture sets without any are left out
+  /// Width over which the masks' borders fade, across seams too: object units, or texels where
+  /// these are above 0.
+  float feather = 0.0F;
+  float feather_texels = 0.0F;
 };
 using ViewSpec = std::variant<NamedView, FreeView, FacingView, SurfaceView>;
 /// The one view that a spec means; not for SurfaceView.

@@ -33,6 +33,12 @@ Extent model_extent(const Bounds& bounds, const View& view) {
   return {middle.head<2>() - reach, middle.head<2>() + reach};
 }
 
+/// How far an edit looks beyond what it changes, in a chart whose pixels are that long.
+float reach_of(const Edit& edit, float pixel) {
+  const float feather = edit.part ? edit.part->feather : 0.0F;
+  return std::max(edit.operation->reach(pixel), feather);
+}
+
 /// The window that the edit needs. There is nothing to read or write beyond the model, so that a
 /// huge brush or sigma costs no more than the whole model does; and rather than let the pixels grow
 /// coarser than the texels, an edit reads less far.
@@ -40,7 +46,7 @@ ChartGrid choose_grid(const Edit& edit, const View& view, const Extent& extent, 
                       float pixel) {
   const Vec2f spare =
       0.5F * (Vec2f::Constant(pixel * (max_chart_side - 16)) - (extent.high - extent.low));
-  const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(edit.operation->reach(pixel));
+  const Vec2f reach = spare.cwiseMax(0.0F).cwiseMin(reach_of(edit, pixel));
   const Extent read = intersect(Extent{extent.low - reach, extent.high + reach}, model);
   const Extent window = widened(read, 4.0F * pixel);
   try {

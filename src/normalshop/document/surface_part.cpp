@@ -3,13 +3,57 @@
 #include <algorithm>
 #include <iterator>
 
+#include "normalshop/chart/pull_masks.h"
+#include "normalshop/core/error.h"
+#include "normalshop/core/for_pixels.h"
 #include "normalshop/document/operate.h"
 #include "normalshop/document/surface_trace.h"
+#include "normalshop/rgbn/smooth.h"
+#include "normalshop/surface/texel_density.h"
 
 namespace normalshop {
 
+namespace {
+
+/// The masks by texture set.
+std::vector<std::shared_ptr<const MaskImage>> masks_by_set(const Edit& edit, const Mesh& mesh) {
+  const std::vector<std::string>& names = mesh.texture_set_names;
+  std::vector<std::shared_ptr<const MaskImage>> out(names.size());
+  for (const AtlasMask& mask : edit.part->masks) {
+    bool found = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!mask.set.empty() && mask.set != names[i]) continue;
+      out[i] = mask.image;
+      found = true;
+    }
+    if (found) continue;
+    throw InvalidInput(edit.path + ".part.mask names the texture set '" + mask.set +
+                       "', which the model does not have; it has '" + names.front() + "'" +
+                       (names.size() > 1 ? " and others" : ""));
+  }
+  return out;
+}
+
+}  // namespace
+
+Edit with_feather_in_units(Edit edit, const Mesh& mesh, const StorageAtlas& storage) {
+  if (!edit.part || !(edit.part->feather_texels > 0.0F)) return edit;
+  double texel = 0.0;
+  for (std::size_t i = 0; i < storage.sets.size() && !(texel > 0.0); ++i) {
+    const NormalMap& map = storage.sets[i].normals;
+    texel =
+        texel_density(mesh, static_cast<std::uint32_t>(i), map.width(), map.height()).area_median;
+  }
+  edit.part->feather = edit.part->feather_texels * static_cast<float>(texel);
+  edit.part->feather_texels = 0.0F;
+  return edit;
+}
+
 PartMask::PartMask(const Edit& edit, const Mesh& mesh) {
   if (!edit.part) return;
+  if (!edit.part->masks.empty()) masks_ = masks_by_set(edit, mesh);
+  feather_ = edit.part->feather;
+  if (edit.part->charts_at.empty()) return;
   const Seams seams = find_seams(mesh);
   std::vector<std::uint8_t> charts(seams.chart_count, 0);
   for (std::size_t i = 0; i < edit.part->charts_at.size(); ++i) {
@@ -21,6 +65,23 @@ PartMask::PartMask(const Edit& edit, const Mesh& mesh) {
   std::transform(
       seams.chart.begin(), seams.chart.end(), triangles_.begin(),
       [&](std::uint32_t chart) { return chart == no_chart ? std::uint8_t{0} : charts[chart]; });
+}
+
+MaskImage PartMask::weights(const Mesh& mesh, const EditingChart& chart) const {
+  std::vector<MaskView> masks;
+  for (const auto& mask : masks_) masks.push_back(mask ? mask->view() : MaskView());
+  MaskImage weights = pull_masks(mesh, masks, chart);
+  if (!(feather_ > 0.0F)) return weights;
+  MaskImage seen(weights.width(), weights.height());
+  for_pixels(seen.rect(), [&](int x, int y) {
+    seen(x, y) = chart.ids.triangle(x, y) == no_triangle ? 0.0F : 1.0F;
+  });
+  // Two standard deviations on either side of the border.
+  const auto widest = static_cast<float>(std::max(weights.width(), weights.height()));
+  SmoothOptions blur;
+  blur.sigma = std::min(0.25F * feather_ / chart.grid.pixel, widest);
+  smooth(weights, seen, weights, weights.rect(), blur);
+  return weights;
 }
 
 CoverView PartMask::narrowed(const CoverView& view, const Mesh& mesh) const {

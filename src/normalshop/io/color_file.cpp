@@ -85,8 +85,9 @@ ColorImage color_from_codes(const RawImage& codes) {
   return image;
 }
 
-MaskImage read_mask(const std::filesystem::path& path) {
-  const RawImage codes = read_image(path);
+MaskImage read_mask(const std::filesystem::path& path) { return mask_from_codes(read_image(path)); }
+
+MaskImage mask_from_codes(const RawImage& codes) {
   const int channels = codes.channels() >= 3 ? 3 : 1;
   const float full = RawImage::full_code(codes.type()) * static_cast<float>(channels);
   MaskImage mask(codes.width(), codes.height());

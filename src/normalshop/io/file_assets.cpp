@@ -67,6 +67,12 @@ Patch FileAssets::patch(const std::string& file) {
   return patch;
 }
 
+MaskImage FileAssets::mask(const std::string& file) {
+  const std::filesystem::path path = folder_ / file;
+  return mask_from_codes(
+      read_image(std::as_bytes(std::span(read(file, path, largest_file))), path.string()));
+}
+
 Image<float> FileAssets::kernel(const std::string& file) {
   const std::filesystem::path path = folder_ / file;
   return parse_kernel(read(file, path, largest_kernel), path.string());

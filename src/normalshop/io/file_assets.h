@@ -11,14 +11,15 @@
 
 namespace normalshop {
 
-/// Patches, kernels and fonts from files: those of a folder, where relative names start, or some
-/// that are given.
+/// Patches, masks, kernels and fonts from files: those of a folder, where relative names start, or
+/// some that are given.
 class FileAssets : public Assets {
  public:
   explicit FileAssets(std::filesystem::path folder) : folder_(std::move(folder)) {}
   explicit FileAssets(std::vector<NamedFile> files) : given_(std::move(files)) {}
 
   Patch patch(const std::string& file) override;
+  MaskImage mask(const std::string& file) override;
   Image<float> kernel(const std::string& file) override;
   Outline text(const std::string& text, const std::string& font) override;
   std::vector<NamedFile> take_files() override { return std::exchange(read_, {}); }

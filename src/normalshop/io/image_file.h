@@ -55,6 +55,7 @@ ColorImage color_from_codes(const RawImage& codes);
 /// A grey picture, or the mean of a coloured one's channels, as 0 (code 0 and NaN) to 1 (the
 /// largest code); alpha left out. Throws like read_image().
 MaskImage read_mask(const std::filesystem::path& path);
+MaskImage mask_from_codes(const RawImage& codes);
 
 /// 8-bit sRGB PNG of linear colours; values outside 0..1 are clamped.
 void write_png_srgb(const std::filesystem::path& path, ColorView image);
