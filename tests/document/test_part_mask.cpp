@@ -102,6 +102,43 @@ TEST(PartMask, LeavesNoSeam) {
   EXPECT_LT(apart / count, 1.0);
 }
 
+/// The plane with a texture set for each half, as a UDIM model has tiles.
+Document two_sets() {
+  Mesh mesh = plane_two_charts(2);
+  mesh.texture_set_names = {"left", "right"};
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const float x =
+        mesh.position(3 * t).x() + mesh.position(3 * t + 1).x() + mesh.position(3 * t + 2).x();
+    mesh.texture_sets[t] = x < 1.5F ? 0 : 1;
+  }
+  std::vector<Document::Maps> maps;
+  for (int i = 0; i < 2; ++i) {
+    maps.push_back({flat_normal_map(plane_texels, plane_texels, CodeType::U16), {}});
+  }
+  return {std::move(mesh), std::move(maps)};
+}
+
+TEST(PartMask, OfOneTextureSetFadesIntoTheOther) {
+  const auto tilted = [](const std::string& part) {
+    Document d = two_sets();
+    d.apply(edit(masked(part)));
+    EXPECT_TRUE(d.storage().sets[1].normals.has_edits());
+    return d;
+  };
+  const auto tilt = [](const Document& d, float x) {  // in the left half
+    const auto texel = static_cast<int>(std::lround((0.1F + 0.8F * x) * plane_texels - 0.5F));
+    const Vec3f n = d.storage().sets[0].normals.normal(texel, plane_texels / 2);
+    return n.head<2>().norm() / n.z() / 0.36397F;
+  };
+  const Document sharp = tilted(R"({"mask": {"right": "grey.png"}})");
+  EXPECT_EQ(tilt(sharp, 0.46F), 0.0F);
+  const Document soft = tilted(R"({"mask": {"right": "grey.png"}, "feather": 0.2})");
+  EXPECT_NEAR(tilt(soft, 0.49F), 0.21F, 0.02F);
+  EXPECT_NEAR(tilt(soft, 0.45F), 0.08F, 0.01F);
+  EXPECT_NEAR(tilt(soft, 0.4F), 0.011F, 0.005F);
+  EXPECT_EQ(tilt(soft, 0.2F), 0.0F);
+}
+
 std::string mask_refusal(const std::string& part) {
   Document d = flat_plane(32);
   try {

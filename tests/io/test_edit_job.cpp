@@ -435,5 +435,22 @@ TEST(EditJob, DoesNotDependOnThreads) {
   }
 }
 
+TEST(EditNotes, TellHowMuchLongerThanTexelsPixelsAre) {
+  Edit edit;
+  edit.path = "r.json: edits[0]";
+  EditReport report;
+  report.texels_per_pixel = 1.0F;
+  std::vector<std::string> notes;
+  note_edit(edit, report, notes);
+  EXPECT_TRUE(notes.empty());
+  report.texels_per_pixel = 1.904F;
+  note_edit(edit, report, notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0],
+            "r.json: edits[0]: covers more texels than an editing chart has pixels, which are 90 % "
+            "longer than the finest texels, so it comes out softer than the map could show; edit "
+            "from nearer");
+}
+
 }  // namespace
 }  // namespace normalshop
