@@ -62,11 +62,8 @@ Rect emboss(SlopeSpan details, MaskSpan coverage, Rect region, const Outline& ou
   const Profile profile({.shape = ProfileShape::Step, .closed = true, .curve = {}});
   const PolylineField field({shape}, profile, options.height, FieldCoverage::Inside);
   region = intersect(region, details.rect());
-  field.render(region, 1, [&](int x, int y, std::span<const FieldSample> row) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      details.row(y)[x + static_cast<int>(i)] = row[i].slope;
-      if (!coverage.empty()) coverage.row(y)[x + static_cast<int>(i)] = row[i].coverage;
-    }
+  field.render(region, 1, [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
+    write_cell(pixels, x, y, cell, details, coverage);
   });
   return intersect(region, field.bounds());
 }

@@ -127,22 +127,31 @@ Rect pen(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Stro
          const PenOptions& options) {
   const PolylineField field = make_field(strokes, options);
   region = intersect(region, details.rect());
-  field.render(region, grid(options), [&](int x, int y, std::span<const FieldSample> row) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      details.row(y)[x + static_cast<int>(i)] = row[i].slope;
-      if (!coverage.empty()) coverage.row(y)[x + static_cast<int>(i)] = row[i].coverage;
-    }
+  field.render(region, grid(options), [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
+    write_cell(pixels, x, y, cell, details, coverage);
   });
   return intersect(region, field.bounds());
+}
+
+void redraw_pen(SlopeSpan details, MaskSpan coverage, std::span<const Stroke> before,
+                std::span<const Stroke> strokes, const PenOptions& options, PixelBlocks& drawn) {
+  static_assert(PixelBlocks::side == cell_side);
+  const PolylineField field = make_field(strokes, options);
+  field.render_changes(make_field(before, options), drawn.region(), grid(options),
+                       [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
+                         write_cell(pixels, x, y, cell, details, coverage);
+                         drawn.mark(x / cell_side, y / cell_side);
+                       });
 }
 
 Rect pen_height(MaskSpan height, Rect region, std::span<const Stroke> strokes,
                 const PenOptions& options) {
   const PolylineField field = make_field(strokes, options);
   region = intersect(region, height.rect());
-  field.render(region, grid(options), [&](int x, int y, std::span<const FieldSample> row) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      height.row(y)[x + static_cast<int>(i)] = row[i].height;
+  field.render(region, grid(options), [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
+    for (int j = pixels.y0; j < pixels.y1; ++j) {
+      const float* row = &cell.height[static_cast<std::size_t>((j - y) * cell_side)];
+      std::copy(row + (pixels.x0 - x), row + (pixels.x1 - x), height.row(j) + pixels.x0);
     }
   });
   return intersect(region, field.bounds());

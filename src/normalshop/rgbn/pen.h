@@ -8,6 +8,7 @@
 #include "normalshop/core/curve.h"
 #include "normalshop/core/image.h"
 #include "normalshop/core/options.h"
+#include "normalshop/core/pixel_blocks.h"
 #include "normalshop/rgbn/profile.h"
 #include "normalshop/rgbn/stroke.h"
 
@@ -70,6 +71,12 @@ struct PenOptions {
 /// not finite, and what Profile rejects. Empty strokes are skipped.
 Rect pen(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Stroke> strokes,
          const PenOptions& options);
+
+/// Makes what pen() drew along `before`, in these images and with these options, what it draws
+/// along `strokes` in drawn.region(): only what may have become different is written, whole blocks,
+/// which are marked. Throws as pen(), before anything is written.
+void redraw_pen(SlopeSpan details, MaskSpan coverage, std::span<const Stroke> before,
+                std::span<const Stroke> strokes, const PenOptions& options, PixelBlocks& drawn);
 
 /// The height in pixels whose slopes pen() gives, the raised inside included.
 Rect pen_height(MaskSpan height, Rect region, std::span<const Stroke> strokes,

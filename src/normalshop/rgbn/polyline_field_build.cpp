@@ -40,8 +40,10 @@ void PolylineField::add(const FieldShape& source) {
   const std::size_t first = segments_.size();
   shapes_.emplace_back();
   shapes_.back().closed = source.closed;
+  shapes_.back().first = static_cast<std::uint32_t>(first);
   for (const auto& contour : source.contours) add_contour(contour, source.closed);
   Shape& shape = shapes_.back();
+  shape.end = static_cast<std::uint32_t>(segments_.size());
   if (source.length >= 0.0F) shape.length = source.length;
   double area = 0.0;
   float bottom = -std::numeric_limits<float>::infinity();

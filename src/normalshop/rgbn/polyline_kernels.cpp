@@ -1,6 +1,7 @@
 #include "normalshop/rgbn/detail/polyline_kernels.h"
 
 #include <algorithm>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normalshop/rgbn/polyline_kernels.cpp"
@@ -11,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace normalshop::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Tag = hn::CappedTag<float, line_lanes>;
+using Tag = hn::CappedTag<float, most_lanes>;
 using IndexTag = hn::RebindToSigned<Tag>;
 using V = hn::Vec<Tag>;
 using Index = hn::Vec<IndexTag>;
@@ -24,58 +25,87 @@ inline V Dot(V ax, V ay, V bx, V by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(a
 
 inline V Clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
 
-inline V Gather(const std::vector<float>& column, Index at) {
-  return hn::GatherIndex(d, column.data(), at);
-}
+/// Reads columns for lanes that all have to do with one segment.
+struct OneSegment {
+  std::size_t segment;
+  V operator()(const std::vector<float>& column) const { return hn::Set(d, column[segment]); }
+  Index operator()(const std::vector<std::int32_t>& column) const {
+    return hn::Set(di, column[segment]);
+  }
+};
 
-inline Index Gather(const std::vector<std::int32_t>& column, Index at) {
-  return hn::GatherIndex(di, column.data(), at);
+/// Reads columns for lanes each of which has to do with another one: far slower.
+struct ManySegments {
+  Index segments;
+  V operator()(const std::vector<float>& column) const {
+    return hn::GatherIndex(d, column.data(), segments);
+  }
+  Index operator()(const std::vector<std::int32_t>& column) const {
+    return hn::GatherIndex(di, column.data(), segments);
+  }
+};
+
+/// Reads columns for lanes that have to do with segments side by side.
+struct SegmentsFrom {
+  std::size_t first;
+  V operator()(const std::vector<float>& column) const {
+    return hn::LoadU(d, column.data() + first);
+  }
+};
+
+/// Is it the same for all lanes?
+inline bool IsOne(Index segments) {
+  return hn::AllTrue(di, hn::Eq(segments, hn::Set(di, hn::GetLane(segments))));
+}
+inline OneSegment OneOf(Index segments) {
+  return {static_cast<std::size_t>(hn::GetLane(segments))};
 }
 
 inline M IsSet(Index flags) { return hn::RebindMask(d, hn::Lt(flags, hn::Zero(di))); }
 
-struct Nearest {
-  Index segment;
+/// The nearest place on a straight segment, and the way from there.
+struct Foot {
   V along, x, y, squared;
 };
 
-inline Nearest NearestOf(const SegmentColumns& s, std::span<const std::uint32_t> list, V px, V py) {
-  const V zero = hn::Zero(d);
-  Nearest best{hn::Set(di, static_cast<std::int32_t>(list.front())), zero, zero, zero,
-               hn::Set(d, 1e30F)};
+template <class Of>
+inline Foot FootOf(const SegmentColumns& s, const Of& of, V px, V py) {
+  const V dx = of(s.dx);
+  const V dy = of(s.dy);
+  const V from_x = hn::Sub(px, of(s.ax));
+  const V from_y = hn::Sub(py, of(s.ay));
+  const V along = Clamp(Dot(from_x, from_y, dx, dy), hn::Zero(d), of(s.length));
+  const V x = hn::Sub(from_x, hn::Mul(along, dx));
+  const V y = hn::Sub(from_y, hn::Mul(along, dy));
+  return {along, x, y, Dot(x, y, x, y)};
+}
+
+/// Of equally near ones the first.
+inline Index NearestOf(const SegmentColumns& s, std::span<const std::uint32_t> list, V px, V py) {
+  Index nearest = hn::Set(di, static_cast<std::int32_t>(list.front()));
+  V least = hn::Set(d, 1e30F);
   for (const std::uint32_t i : list) {
-    const V dx = hn::Set(d, s.dx[i]);
-    const V dy = hn::Set(d, s.dy[i]);
-    const V from_x = hn::Sub(px, hn::Set(d, s.ax[i]));
-    const V from_y = hn::Sub(py, hn::Set(d, s.ay[i]));
-    const V along = Clamp(Dot(from_x, from_y, dx, dy), zero, hn::Set(d, s.length[i]));
-    const V x = hn::Sub(from_x, hn::Mul(along, dx));
-    const V y = hn::Sub(from_y, hn::Mul(along, dy));
-    const V squared = Dot(x, y, x, y);
-    const M nearer = hn::Lt(squared, best.squared);
-    best.segment = hn::IfThenElse(hn::RebindMask(di, nearer),
-                                  hn::Set(di, static_cast<std::int32_t>(i)), best.segment);
-    best.along = hn::IfThenElse(nearer, along, best.along);
-    best.x = hn::IfThenElse(nearer, x, best.x);
-    best.y = hn::IfThenElse(nearer, y, best.y);
-    best.squared = hn::IfThenElse(nearer, squared, best.squared);
+    const V squared = FootOf(s, OneSegment{i}, px, py).squared;
+    const M nearer = hn::Lt(squared, least);
+    nearest = hn::IfThenElse(hn::RebindMask(di, nearer), hn::Set(di, static_cast<std::int32_t>(i)),
+                             nearest);
+    least = hn::IfThenElse(nearer, squared, least);
   }
-  return best;
+  return nearest;
 }
 
 /// Behind the end of a segment or before its start, the neighbour's part of the line is near.
-inline Index BesideOf(const SegmentColumns& s, const Nearest& near, M at_start, M at_end) {
+template <class Of>
+inline Index BesideOf(const SegmentColumns& s, const Of& of, Index segment, const Foot& near,
+                      M at_start, M at_end) {
   const V zero = hn::Zero(d);
-  const V end_side =
-      Dot(near.x, near.y, Gather(s.end_x, near.segment), Gather(s.end_y, near.segment));
-  const V start_side =
-      Dot(near.x, near.y, Gather(s.start_x, near.segment), Gather(s.start_y, near.segment));
+  const V end_side = Dot(near.x, near.y, of(s.end_x), of(s.end_y));
+  const V start_side = Dot(near.x, near.y, of(s.start_x), of(s.start_y));
   const M after = hn::And(at_end, hn::Gt(end_side, zero));
   const M before = hn::And(at_start, hn::Lt(start_side, zero));
-  const Index next = hn::IfThenElseZero(hn::RebindMask(di, after), Gather(s.next, near.segment));
-  const Index previous =
-      hn::IfThenElseZero(hn::RebindMask(di, before), Gather(s.previous, near.segment));
-  return hn::Add(near.segment, hn::Add(next, previous));
+  const Index next = hn::IfThenElseZero(hn::RebindMask(di, after), of(s.next));
+  const Index previous = hn::IfThenElseZero(hn::RebindMask(di, before), of(s.previous));
+  return hn::Add(segment, hn::Add(next, previous));
 }
 
 struct Along {
@@ -83,17 +113,18 @@ struct Along {
 };
 
 /// Newton's method for the place whose direction is square to the way to the point.
-inline Along AlongOf(const SegmentColumns& s, Index segment, V px, V py) {
-  const V from_x = hn::Sub(px, Gather(s.ax, segment));
-  const V from_y = hn::Sub(py, Gather(s.ay, segment));
-  const V dx = Gather(s.dx, segment);
-  const V dy = Gather(s.dy, segment);
-  const V length = Gather(s.length, segment);
-  const V start_x = Gather(s.start_x, segment);
-  const V start_y = Gather(s.start_y, segment);
+template <class Of>
+inline Along AlongOf(const SegmentColumns& s, const Of& of, V px, V py) {
+  const V from_x = hn::Sub(px, of(s.ax));
+  const V from_y = hn::Sub(py, of(s.ay));
+  const V dx = of(s.dx);
+  const V dy = of(s.dy);
+  const V length = of(s.length);
+  const V start_x = of(s.start_x);
+  const V start_y = of(s.start_y);
   const V divisor = hn::Max(length, hn::Set(d, 1e-6F));
-  const V turn_x = hn::Div(hn::Sub(Gather(s.end_x, segment), start_x), divisor);
-  const V turn_y = hn::Div(hn::Sub(Gather(s.end_y, segment), start_y), divisor);
+  const V turn_x = hn::Div(hn::Sub(of(s.end_x), start_x), divisor);
+  const V turn_y = hn::Div(hn::Sub(of(s.end_y), start_y), divisor);
   const V linear = hn::Sub(Dot(from_x, from_y, turn_x, turn_y), Dot(dx, dy, start_x, start_y));
   const V square = hn::Neg(Dot(dx, dy, turn_x, turn_y));
   const V constant = Dot(from_x, from_y, start_x, start_y);
@@ -116,16 +147,15 @@ struct Away {
 };
 
 /// Sides are left and right as seen, although y runs down.
-inline Away AwayOf(const SegmentColumns& s, const Nearest& near, M at_start, M at_end) {
+template <class Of>
+inline Away AwayOf(const SegmentColumns& s, const Of& of, const Foot& near, M at_start, M at_end) {
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0F);
   const V distance = hn::Sqrt(near.squared);
-  const V tangent_x = hn::IfThenElse(
-      at_start, Gather(s.start_x, near.segment),
-      hn::IfThenElse(at_end, Gather(s.end_x, near.segment), Gather(s.dx, near.segment)));
-  const V tangent_y = hn::IfThenElse(
-      at_start, Gather(s.start_y, near.segment),
-      hn::IfThenElse(at_end, Gather(s.end_y, near.segment), Gather(s.dy, near.segment)));
+  const V tangent_x =
+      hn::IfThenElse(at_start, of(s.start_x), hn::IfThenElse(at_end, of(s.end_x), of(s.dx)));
+  const V tangent_y =
+      hn::IfThenElse(at_start, of(s.start_y), hn::IfThenElse(at_end, of(s.end_y), of(s.dy)));
   const V left_y = hn::Neg(tangent_x);
   const V side =
       hn::IfThenElse(hn::Lt(Dot(near.x, near.y, tangent_y, left_y), zero), hn::Neg(one), one);
@@ -137,20 +167,21 @@ inline Away AwayOf(const SegmentColumns& s, const Nearest& near, M at_start, M a
 
 /// The same from a segment that bends: Newton's method for the foot (s, b(s)) in coordinates along
 /// the segment and across. Bends being small, it is near the foot on the straight line.
-inline Away BentAwayOf(const SegmentColumns& s, Index segment, V px, V py) {
+template <class Of>
+inline Away BentAwayOf(const SegmentColumns& s, const Of& of, V px, V py) {
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0F);
   const auto times = [](float factor, V v) { return hn::Mul(hn::Set(d, factor), v); };
-  const V dx = Gather(s.dx, segment);
-  const V dy = Gather(s.dy, segment);
-  const V from_x = hn::Sub(px, Gather(s.ax, segment));
-  const V from_y = hn::Sub(py, Gather(s.ay, segment));
+  const V dx = of(s.dx);
+  const V dy = of(s.dy);
+  const V from_x = hn::Sub(px, of(s.ax));
+  const V from_y = hn::Sub(py, of(s.ay));
   const V ahead = Dot(from_x, from_y, dx, dy);
   const V across = hn::Sub(hn::Mul(from_y, dx), hn::Mul(from_x, dy));
-  const V length = hn::Max(Gather(s.length, segment), hn::Set(d, 1e-6F));
+  const V length = hn::Max(of(s.length), hn::Set(d, 1e-6F));
   const V share = hn::Div(one, length);
-  const V start = Gather(s.start_bend, segment);
-  const V end = Gather(s.end_bend, segment);
+  const V start = of(s.start_bend);
+  const V end = of(s.end_bend);
   // b(t L) = L (start t + square t^2 + cube t^3).
   const V square = hn::Neg(hn::Add(times(2.0F, start), end));
   const V cube = hn::Add(start, end);
@@ -186,84 +217,104 @@ inline Away BentAwayOf(const SegmentColumns& s, Index segment, V px, V py) {
           side};
 }
 
-inline M BendsOf(const SegmentColumns& s, const LineList& list, Index segment, M cap) {
+template <class Of>
+inline M BendsOf(const SegmentColumns& s, const LineList& list, const Of& of, M cap) {
   const V zero = hn::Zero(d);
   if (!list.bends) return hn::Lt(zero, zero);
-  const M bends = hn::Or(hn::Ne(Gather(s.start_bend, segment), zero),
-                         hn::Ne(Gather(s.end_bend, segment), zero));
+  const M bends = hn::Or(hn::Ne(of(s.start_bend), zero), hn::Ne(of(s.end_bend), zero));
   return hn::AndNot(cap, bends);
 }
 
-inline void PlacesOf(const SegmentColumns& s, const LineList& list, const LinePoints& points, int i,
-                     LinePlaces& out) {
+/// Sixteen points of a cell, or fewer.
+struct Points {
+  V x, y;
+  std::size_t first;
+};
+
+/// Where a point lies to the straight segment that is nearest.
+struct Ends {
+  M start, end, cap;
+};
+
+/// Of points whose nearest segments are `near` and that lie beside those of `beside`.
+template <class Near, class Beside>
+inline void PlacesBeside(const SegmentColumns& s, const LineList& list, const Points& points,
+                         const Near& near, const Foot& foot, const Ends& at, Index segment,
+                         const Beside& beside, LinePlaces& out) {
   const V zero = hn::Zero(d);
-  const V px = hn::LoadU(d, points.x.data() + i);
-  const V py = hn::LoadU(d, points.y.data() + i);
-  const Nearest near = NearestOf(s, list.segments, px, py);
-  const M at_start = hn::Le(near.along, zero);
-  const M at_end = hn::Ge(near.along, Gather(s.length, near.segment));
-  const M cap = hn::Or(hn::And(at_start, IsSet(Gather(s.start_cap, near.segment))),
-                       hn::And(at_end, IsSet(Gather(s.end_cap, near.segment))));
-  Index segment = near.segment;
-  if ((!list.even || list.bends) && !hn::AllFalse(d, hn::Or(at_start, at_end))) {
-    segment = hn::IfThenElse(hn::RebindMask(di, cap), segment, BesideOf(s, near, at_start, at_end));
-  }
   Along v{zero, zero, zero};
-  if (!list.even) v = AlongOf(s, segment, px, py);
-  v.at = hn::IfThenElse(cap, near.along, v.at);
-  const M bends = BendsOf(s, list, segment, cap);
+  if (!list.even) v = AlongOf(s, beside, points.x, points.y);
+  v.at = hn::IfThenElse(at.cap, foot.along, v.at);
+  const M bends = BendsOf(s, list, beside, at.cap);
   Away away;
-  if (!hn::AllTrue(d, bends)) away = AwayOf(s, near, at_start, at_end);
+  if (!hn::AllTrue(d, bends)) away = AwayOf(s, near, foot, at.start, at.end);
   if (!hn::AllFalse(d, bends)) {
-    const Away bent = BentAwayOf(s, segment, px, py);
+    const Away bent = BentAwayOf(s, beside, points.x, points.y);
     if (hn::AllTrue(d, bends)) away = bent;
     away = {hn::IfThenElse(bends, bent.distance, away.distance),
             hn::IfThenElse(bends, bent.x, away.x), hn::IfThenElse(bends, bent.y, away.y),
             hn::IfThenElse(bends, bent.side, away.side)};
   }
-  const V half_width =
-      hn::Add(Gather(s.half_width, segment), hn::Mul(v.at, Gather(s.half_width_rate, segment)));
+  const V half_width = hn::Add(beside(s.half_width), hn::Mul(v.at, beside(s.half_width_rate)));
   const M inside = hn::And(hn::And(hn::Lt(away.distance, hn::Set(d, list.largest_half_width)),
                                    hn::Lt(away.distance, half_width)),
                            hn::Ge(half_width, hn::Set(d, 1e-6F)));
-  const Index kind = hn::IfThenElse(hn::RebindMask(di, cap),
-                                    hn::Set(di, static_cast<std::int32_t>(LinePlace::Cap)),
-                                    hn::Set(di, static_cast<std::int32_t>(LinePlace::Beside)));
-  LineLanes<std::int32_t> kinds;
-  hn::StoreU(hn::IfThenElseZero(hn::RebindMask(di, inside), kind), di, kinds.data());
-  for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
-    out.place[static_cast<std::size_t>(i) + k] = static_cast<LinePlace>(kinds[k]);
-  }
-  hn::StoreU(segment, di, out.segment.data() + i);
-  hn::StoreU(v.at, d, out.at.data() + i);
-  hn::StoreU(half_width, d, out.half_width.data() + i);
-  hn::StoreU(away.distance, d, out.distance.data() + i);
-  hn::StoreU(hn::IfThenElse(cap, near.x, away.x), d, out.x.data() + i);
-  hn::StoreU(hn::IfThenElse(cap, near.y, away.y), d, out.y.data() + i);
-  hn::StoreU(away.side, d, out.side.data() + i);
-  hn::StoreU(v.x, d, out.along_x.data() + i);
-  hn::StoreU(v.y, d, out.along_y.data() + i);
+  const Index kind =
+      hn::IfThenElse(hn::RebindMask(di, at.cap), hn::Set(di, line_cap), hn::Set(di, line_beside));
+  const std::size_t i = points.first;
+  hn::Store(hn::IfThenElseZero(hn::RebindMask(di, inside), kind), di, out.place.data() + i);
+  hn::Store(segment, di, out.segment.data() + i);
+  hn::Store(v.at, d, out.at.data() + i);
+  hn::Store(half_width, d, out.half_width.data() + i);
+  hn::Store(away.distance, d, out.distance.data() + i);
+  hn::Store(hn::IfThenElse(at.cap, foot.x, away.x), d, out.x.data() + i);
+  hn::Store(hn::IfThenElse(at.cap, foot.y, away.y), d, out.y.data() + i);
+  hn::Store(away.side, d, out.side.data() + i);
+  hn::Store(v.x, d, out.along_x.data() + i);
+  hn::Store(v.y, d, out.along_y.data() + i);
 }
 
-void LinePlacesOf(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
+template <class Near>
+inline void PlacesNear(const SegmentColumns& s, const LineList& list, const Points& points,
+                       Index nearest, const Near& near, LinePlaces& out) {
+  const Foot foot = FootOf(s, near, points.x, points.y);
+  const M at_start = hn::Le(foot.along, hn::Zero(d));
+  const M at_end = hn::Ge(foot.along, near(s.length));
+  const M cap =
+      hn::Or(hn::And(at_start, IsSet(near(s.start_cap))), hn::And(at_end, IsSet(near(s.end_cap))));
+  const Ends at{at_start, at_end, cap};
+  Index segment = nearest;
+  if ((!list.even || list.bends) && !hn::AllFalse(d, hn::Or(at_start, at_end))) {
+    segment = hn::IfThenElse(hn::RebindMask(di, cap), segment,
+                             BesideOf(s, near, nearest, foot, at_start, at_end));
+  }
+  if (IsOne(segment)) {
+    PlacesBeside(s, list, points, near, foot, at, segment, OneOf(segment), out);
+  } else {
+    PlacesBeside(s, list, points, near, foot, at, segment, ManySegments{segment}, out);
+  }
+}
+
+void LinePlacesOf(const SegmentColumns& s, const LineList& list, const LinePoints& all,
                   LinePlaces& out) {
-  for (int i = 0; i < line_lanes; i += static_cast<int>(hn::Lanes(d))) {
-    PlacesOf(segments, list, points, i, out);
+  for (std::size_t i = 0; i < all.x.size(); i += hn::Lanes(d)) {
+    const Points points{hn::Load(d, all.x.data() + i), hn::Load(d, all.y.data() + i), i};
+    const Index nearest = NearestOf(s, list.segments, points.x, points.y);
+    if (IsOne(nearest)) {
+      PlacesNear(s, list, points, nearest, OneOf(nearest), out);
+    } else {
+      PlacesNear(s, list, points, nearest, ManySegments{nearest}, out);
+    }
   }
 }
 
-inline void OffsetsOf(const SegmentColumns& s, Index list, V px, V py, std::size_t i,
+template <class Of>
+inline void OffsetsOf(const SegmentColumns& s, const Of& of, V px, V py, std::size_t i,
                       SegmentOffsets& out) {
-  const V dx = Gather(s.dx, list);
-  const V dy = Gather(s.dy, list);
-  const V from_x = hn::Sub(px, Gather(s.ax, list));
-  const V from_y = hn::Sub(py, Gather(s.ay, list));
-  const V along = Clamp(Dot(from_x, from_y, dx, dy), hn::Zero(d), Gather(s.length, list));
-  const V x = hn::Sub(from_x, hn::Mul(along, dx));
-  const V y = hn::Sub(from_y, hn::Mul(along, dy));
-  hn::StoreU(x, d, out.x.data() + i);
-  hn::StoreU(y, d, out.y.data() + i);
-  hn::StoreU(Dot(x, y, x, y), d, out.squared.data() + i);
+  const Foot foot = FootOf(s, of, px, py);
+  hn::StoreU(foot.x, d, out.x.data() + i);
+  hn::StoreU(foot.y, d, out.y.data() + i);
+  hn::StoreU(foot.squared, d, out.squared.data() + i);
 }
 
 void SegmentOffsetsOf(const SegmentColumns& segments, std::span<const std::uint32_t> list, float x,
@@ -271,11 +322,17 @@ void SegmentOffsetsOf(const SegmentColumns& segments, std::span<const std::uint3
   const std::size_t lanes = hn::Lanes(d);
   const V px = hn::Set(d, x);
   const V py = hn::Set(d, y);
-  LineLanes<std::int32_t> indices{};
+  alignas(64) std::array<std::int32_t, most_lanes> indices{};
   for (std::size_t i = 0; i < list.size(); i += lanes) {
     const std::size_t count = std::min(lanes, list.size() - i);
+    const std::uint32_t first = list[i];
+    // Neighbours in the line mostly stand side by side.
+    if (count == lanes && list[i + lanes - 1] - first == lanes - 1) {
+      OffsetsOf(segments, SegmentsFrom{first}, px, py, i, out);
+      continue;
+    }
     for (std::size_t k = 0; k < count; ++k) indices[k] = static_cast<std::int32_t>(list[i + k]);
-    OffsetsOf(segments, hn::LoadU(di, indices.data()), px, py, i, out);
+    OffsetsOf(segments, ManySegments{hn::Load(di, indices.data())}, px, py, i, out);
   }
 }
 
@@ -303,10 +360,26 @@ void SegmentColumns::append(const LineSegment& s) {
   end_bend.push_back(s.end_bend);
   half_width.push_back(s.half_width);
   half_width_rate.push_back(s.half_width_rate);
+  fade.push_back(s.fade);
+  fade_rate.push_back(s.fade_rate);
   start_cap.push_back(flag(s.start_cap));
   end_cap.push_back(flag(s.end_cap));
+  even.push_back(flag(s.even));
   previous.push_back(static_cast<std::int32_t>(s.previous));
   next.push_back(static_cast<std::int32_t>(s.next));
+}
+
+bool SegmentColumns::same(std::size_t i, const SegmentColumns& o, std::size_t k) const {
+  const auto equal = [&](auto SegmentColumns::*column) {
+    return std::memcmp(&(this->*column)[i], &(o.*column)[k], sizeof((o.*column)[k])) == 0;
+  };
+  using C = SegmentColumns;
+  return equal(&C::ax) && equal(&C::ay) && equal(&C::dx) && equal(&C::dy) && equal(&C::length) &&
+         equal(&C::start_x) && equal(&C::start_y) && equal(&C::end_x) && equal(&C::end_y) &&
+         equal(&C::start_bend) && equal(&C::end_bend) && equal(&C::half_width) &&
+         equal(&C::half_width_rate) && equal(&C::fade) && equal(&C::fade_rate) &&
+         equal(&C::start_cap) && equal(&C::end_cap) && equal(&C::even) && equal(&C::previous) &&
+         equal(&C::next);
 }
 
 void line_places(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
@@ -316,7 +389,7 @@ void line_places(const SegmentColumns& segments, const LineList& list, const Lin
 
 void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,
                      const Vec2f& point, SegmentOffsets& out) {
-  const std::size_t padded = list.size() + line_lanes;
+  const std::size_t padded = list.size() + most_lanes;
   if (out.squared.size() < padded) {
     for (std::vector<float>* column : {&out.x, &out.y, &out.squared}) column->resize(padded);
   }

@@ -45,6 +45,7 @@ class Profile {
   Value at(float u, float radius) const;
   /// h(1): what the inside of a closed stroke is raised by.
   float level() const { return level_; }
+  ProfileShape shape() const { return shape_; }
 
  private:
   Value custom(float u) const;

@@ -11,7 +11,7 @@ namespace normalshop {
 
 namespace {
 
-constexpr float root_two = 1.41421356F;
+constexpr float level_step = 1.41421356F;
 /// Sine of the angle between normal and light below which the light has no side to come from.
 constexpr float least_sine = 0.2F;
 
@@ -45,7 +45,7 @@ Rect shade_exaggerated(ImageView<Vec3f> normals, ColorView albedo, ColorSpan tar
   NormalLayer level = finest;
   float total = 0.0F;
   float size = options.scale;
-  for (int k = 0; k < options.levels; ++k, size *= root_two) {
+  for (int k = 0; k < options.levels; ++k, size *= level_step) {
     NormalLayer smoother = finest.smoothed(size);
     const float weight = std::pow(size / options.scale, options.balance);
     total += weight;
@@ -68,7 +68,7 @@ Rect shade_exaggerated(ImageView<Vec3f> normals, ColorView albedo, ColorSpan tar
 
 int reach(const ExaggeratedOptions& options) {
   float largest = options.scale;
-  for (int k = 1; k < options.levels; ++k) largest *= root_two;
+  for (int k = 1; k < options.levels; ++k) largest *= level_step;
   return smoothing_reach(largest);
 }
 

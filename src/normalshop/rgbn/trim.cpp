@@ -124,11 +124,8 @@ Rect trim(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Str
   const Pattern laid(pattern, options);
   const PolylineField field(shapes_of(strokes, options), std::cref(laid));
   region = intersect(region, details.rect());
-  field.render(region, laid.grid(), [&](int x, int y, std::span<const FieldSample> row) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      details.row(y)[x + static_cast<int>(i)] = row[i].slope;
-      if (!coverage.empty()) coverage.row(y)[x + static_cast<int>(i)] = row[i].coverage;
-    }
+  field.render(region, laid.grid(), [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
+    write_cell(pixels, x, y, cell, details, coverage);
   });
   return intersect(region, field.bounds());
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,6 @@ struct FieldSample {
   float coverage = 0.0F;
 };
 
-enum class FieldCoverage { Band, Inside };
-
 /// Where a point lies beside a line: the coordinates (u, v) of thesis 2.4.1 and their gradients.
 struct FieldPlace {
   float u;              ///< signed distance / half width, positive to the left or inside
@@ -62,18 +61,23 @@ class PolylineField {
   /// Pixels outside of which slopes and coverage are 0 (and the height too).
   const Rect& bounds() const { return bounds_; }
 
-  /// Samples of the pixels (x, y), (x + 1, y) ... of a part of one row.
-  using Write = std::function<void(int x, int y, std::span<const FieldSample>)>;
+  /// Takes those pixels of the cell that begins at (x, y).
+  using Write = std::function<void(const Rect& pixels, int x, int y, const FieldCell& cell)>;
   /// Hands over every pixel of `region` once, in parallel. `grid` x `grid` positions a pixel are
-  /// averaged.
+  /// averaged. Cells begin at multiples of their side, whatever the region.
   void render(const Rect& region, int grid, const Write& write) const;
+  /// The same of whole cells in which this field may be another than `before`, which has the same
+  /// profile and height and no pattern.
+  void render_changes(const PolylineField& before, const Rect& region, int grid,
+                      const Write& write) const;
 
  private:
   static constexpr int tile_size = 64;
+  /// Cells of cells.
+  static constexpr int block_size = 32;
   /// Rows that share a list of the segments that may cross them.
   static constexpr float band_rows = 8.0F;
   using List = std::vector<std::uint32_t>;
-  using Samples = LineLanes<FieldSample>;
 
   /// Some segments in a row, and a circle around them.
   struct Chunk {
@@ -84,6 +88,8 @@ class PolylineField {
   };
 
   struct Shape {
+    std::uint32_t first = 0;  ///< of its segments
+    std::uint32_t end = 0;
     bool closed = false;
     float length = 0.0F;
     float largest_half_width = 0.0F;
@@ -100,25 +106,45 @@ class PolylineField {
     bool bends = false;  ///< any of them
   };
 
+  /// How a field differs from an earlier one.
+  struct Changes {
+    const PolylineField& before;
+    std::vector<std::uint32_t> first;  ///< by shape: from this segment on they are others
+    List gone;                         ///< segments that were others before
+  };
+
+  /// The squares that one is looking at within another, from tile to cell.
+  struct Level {
+    List segments;
+    List gone;
+  };
+  /// What a task needs again and again.
+  struct Task;
+
   void add(const FieldShape& shape);
   void add_contour(const std::vector<FieldVertex>& contour, bool closed);
   void fill_bands(Shape& shape, std::size_t first, float bottom) const;
   void grow_bounds(const LineSegment& segment, float half_width);
   std::vector<Chunk> chunks(std::size_t first) const;
-  void render_tile(const Rect& tile, int grid, const Write& write) const;
+  std::optional<Changes> changes_from(const PolylineField& before) const;
+  void render(const Rect& region, int grid, const Changes* changes, const Write& write) const;
+  void render_tile(const Rect& tile, Task& task) const;
+  void render_cell(const Rect& square, Task& task) const;
+  void render_far(const Rect& tile, Task& task) const;
   List near(const Rect& square) const;
   void prune(const List& segments, const Rect& cell, SegmentOffsets& offsets, List& kept) const;
+  void prune_gone(const List& gone, const List& kept, const Rect& square, Task& task,
+                  List& out) const;
+  bool narrow(const Level& from, const Rect& square, Task& task, Level& to) const;
   void look_at(Cell& cell) const;
-  Samples pixels(int x, int y, const Cell& cell, int grid) const;
-  Samples sample(const LinePoints& points, const Cell& cell) const;
-  Samples levels(const LinePoints& points, const Shape& shape) const;
+  void pixels(int x, int y, const Cell& cell, int grid, FieldCell& out) const;
+  void sample(const LinePoints& points, const Cell& cell, FieldCell& best) const;
   FieldSample level(const Vec2f& p, const Shape& shape) const;
-  Samples beside(const LinePoints& points, const Shape& shape, const LineList& list) const;
-  void turn_in(const Vec2f& p, const Shape& shape, std::size_t k, LinePlaces& places) const;
-  FieldSample profiled(const LinePlaces& places, std::size_t k) const;
+  void levels(const LinePoints& points, const Shape& shape, FieldCell& out) const;
+  void beside(const LinePoints& points, const Shape& shape, const LineList& list,
+              FieldCell& out) const;
+  void turn_in(const LinePoints& points, const Shape& shape, LinePlaces& places) const;
   FieldSample patterned(const Shape& shape, const LinePlaces& places, std::size_t k) const;
-  FieldSample cap(const LinePlaces& places, std::size_t k) const;
-  float coverage(float u, float fade) const;
   bool inside(const Vec2f& p, const Shape& shape) const;
   const LineSegment& segment_of(const LinePlaces& places, std::size_t k) const {
     return segments_[static_cast<std::size_t>(places.segment[k])];
@@ -133,5 +159,9 @@ class PolylineField {
   std::vector<Shape> shapes_;
   Rect bounds_;
 };
+
+/// Puts pixels of a field's cell that begins at (x, y) into images; coverage may be empty.
+void write_cell(const Rect& pixels, int x, int y, const FieldCell& cell, SlopeSpan details,
+                MaskSpan coverage);
 
 }  // namespace normalshop

@@ -6,35 +6,41 @@
 #include <vector>
 
 #include "normalshop/rgbn/detail/polyline_segment.h"
+#include "normalshop/rgbn/profile.h"
 
-/// The inner loops of fields around polylines, eight pixels at a time. Private to this floor.
-/// Positions are in pixels, y down.
+/// The inner loops of fields around polylines, for a square cell of pixels at a time. Private to
+/// this floor. Positions are in pixels, y down.
 namespace normalshop {
 
-/// A value of each of eight points.
-inline constexpr int line_lanes = 8;
+inline constexpr int cell_side = 8;
+/// Values that a kernel works on at once.
+inline constexpr std::size_t most_lanes = 16;
+/// A value of each of a cell's pixels, row after row.
 template <class T>
-using LineLanes = std::array<T, line_lanes>;
+struct alignas(64) CellLanes : std::array<T, cell_side * cell_side> {};
 
 struct LinePoints {
-  LineLanes<float> x;
-  LineLanes<float> y;
+  CellLanes<float> x;
+  CellLanes<float> y;
 };
 
-enum class LinePlace : std::int32_t { Beyond, Beside, Cap };
+/// What a place is; beyond the line there is nothing.
+inline constexpr std::int32_t line_beyond = 0;
+inline constexpr std::int32_t line_beside = 1;
+inline constexpr std::int32_t line_cap = 2;
 
 /// Where points lie beside a line.
 struct LinePlaces {
-  LineLanes<LinePlace> place;
-  LineLanes<std::int32_t> segment;  ///< that it is beside, or whose end is near
-  LineLanes<float> at;              ///< where along the segment
-  LineLanes<float> half_width;      ///< there
-  LineLanes<float> distance;        ///< from the nearest place of the line
-  LineLanes<float> x;  ///< away from the line, of length 1; at caps: from the end to the point
-  LineLanes<float> y;
-  LineLanes<float> side;     ///< 1 to the left, -1 to the right; of points beside
-  LineLanes<float> along_x;  ///< gradient of the arc length; of points beside
-  LineLanes<float> along_y;
+  CellLanes<std::int32_t> place;
+  CellLanes<std::int32_t> segment;  ///< that it is beside, or whose end is near
+  CellLanes<float> at;              ///< where along the segment
+  CellLanes<float> half_width;      ///< there
+  CellLanes<float> distance;        ///< from the nearest place of the line
+  CellLanes<float> x;  ///< away from the line, of length 1; at caps: from the end to the point
+  CellLanes<float> y;
+  CellLanes<float> side;     ///< 1 to the left, -1 to the right; of points beside
+  CellLanes<float> along_x;  ///< gradient of the arc length; of points beside
+  CellLanes<float> along_y;
 };
 
 /// Some segments, all of one shape.
@@ -45,12 +51,33 @@ struct LineList {
   bool bends;                ///< some segment does
 };
 
-/// Places of points beside the segments of a list. Arc
-/// lengths grow with directions that turn evenly along each segment instead of at its ends: the s
-/// with (p - q(s)) . t(s) = 0. They are continuous beside a bend, where the nearest point jumps in
-/// speed.
+/// Places of points beside the segments of a list. Arc lengths grow with directions that turn
+/// evenly along each segment instead of at its ends: the s with (p - q(s)) . t(s) = 0. They are
+/// continuous beside a bend, where the nearest point jumps in speed.
 void line_places(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
                  LinePlaces& out);
+
+/// What a field is at a cell's pixels.
+struct FieldCell {
+  CellLanes<float> height;
+  CellLanes<float> slope_x;
+  CellLanes<float> slope_y;  ///< up
+  CellLanes<float> coverage;
+};
+
+/// Over a band beside the line, or over all that it encloses.
+enum class FieldCoverage { Band, Inside };
+
+/// Slope jumps of profiles are spread over this many pixels on each side, but not over more of the
+/// profile than this share.
+inline constexpr float jump_radius = 1.5F;
+inline constexpr float largest_jump_share = 0.25F;
+
+/// The field with a profile across the line, at places beside it and at its round ends, where the
+/// odd part of the profile turns over smoothly from one side to the other, h = even(d) + sin(angle)
+/// odd(d). Elsewhere 0. `even`: all segments are, as in LineList.
+void line_samples(const SegmentColumns& segments, const Profile& profile, float height,
+                  FieldCoverage coverage, bool even, const LinePlaces& places, FieldCell& out);
 
 /// From the nearest places on a list's segments to a point.
 struct SegmentOffsets {

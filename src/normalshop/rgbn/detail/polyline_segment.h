@@ -37,10 +37,13 @@ struct SegmentColumns {
   std::vector<float> start_x, start_y, end_x, end_y;  ///< tangents
   std::vector<float> start_bend, end_bend;
   std::vector<float> half_width, half_width_rate;
-  std::vector<std::int32_t> start_cap, end_cap;  ///< -1: yes
+  std::vector<float> fade, fade_rate;
+  std::vector<std::int32_t> start_cap, end_cap, even;  ///< -1: yes
   std::vector<std::int32_t> previous, next;
 
   void append(const LineSegment& segment);
+  /// Is segment i, bit for bit, what segment k of the others is?
+  bool same(std::size_t i, const SegmentColumns& others, std::size_t k) const;
 };
 
 }  // namespace normalshop

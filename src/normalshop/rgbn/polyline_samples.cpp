@@ -1,0 +1,197 @@
+#include "normalshop/rgbn/detail/polyline_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "normalshop/rgbn/polyline_samples.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "normalshop/rgbn/detail/profile-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace normalshop::HWY_NAMESPACE {
+
+using Tag = hn::CappedTag<float, most_lanes>;
+using IndexTag = hn::RebindToSigned<Tag>;
+using V = hn::Vec<Tag>;
+using Index = hn::Vec<IndexTag>;
+using M = hn::Mask<Tag>;
+using Values = ProfileValues<V>;
+
+constexpr Tag d;
+constexpr IndexTag di;
+
+inline V Dot(V ax, V ay, V bx, V by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); }
+
+/// The places of some of a cell's pixels, and what their segments hold.
+struct Lanes {
+  Lanes(const SegmentColumns& columns, const LinePlaces& places, std::size_t i)
+      : segments(hn::Load(di, places.segment.data() + i)),
+        at(hn::Load(d, places.at.data() + i)),
+        half_width(hn::Load(d, places.half_width.data() + i)),
+        distance(hn::Load(d, places.distance.data() + i)),
+        x(hn::Load(d, places.x.data() + i)),
+        y(hn::Load(d, places.y.data() + i)),
+        same(hn::AllTrue(di, hn::Eq(segments, hn::Set(di, hn::GetLane(segments))))) {
+    const V rate = Of(columns.fade_rate);
+    fade = hn::Add(Of(columns.fade), hn::Mul(at, rate));
+  }
+  V Of(const std::vector<float>& column) const {
+    if (same) return hn::Set(d, column[static_cast<std::size_t>(hn::GetLane(segments))]);
+    return hn::GatherIndex(d, column.data(), segments);
+  }
+  Index Of(const std::vector<std::int32_t>& column) const {
+    if (same) return hn::Set(di, column[static_cast<std::size_t>(hn::GetLane(segments))]);
+    return hn::GatherIndex(di, column.data(), segments);
+  }
+
+  Index segments;
+  V at, half_width, distance, x, y, fade;
+  bool same;  ///< segment
+};
+
+struct Sample {
+  V height, x, y, u;
+};
+
+class Sampler {
+ public:
+  Sampler(const SegmentColumns& segments, const Profile& profile, float height,
+          FieldCoverage coverage, bool even)
+      : segments_(segments), profile_(profile), height_(height), coverage_(coverage), even_(even) {}
+
+  void Run(const LinePlaces& places, std::size_t i, FieldCell& out) const {
+    const Index place = hn::Load(di, places.place.data() + i);
+    const M beside = hn::RebindMask(d, hn::Eq(place, hn::Set(di, line_beside)));
+    const M cap = hn::RebindMask(d, hn::Eq(place, hn::Set(di, line_cap)));
+    const V zero = hn::Zero(d);
+    Sample s{zero, zero, zero, zero};
+    V coverage = zero;
+    if (!hn::AllFalse(d, hn::Or(beside, cap))) {
+      const Lanes lanes(segments_, places, i);
+      if (!hn::AllFalse(d, beside)) s = Beside(lanes, places, i);
+      if (!hn::AllFalse(d, cap)) {
+        const Sample round = Cap(lanes);
+        s = {hn::IfThenElse(cap, round.height, s.height), hn::IfThenElse(cap, round.x, s.x),
+             hn::IfThenElse(cap, round.y, s.y), hn::IfThenElse(cap, round.u, s.u)};
+      }
+      coverage = Coverage(s.u, lanes.fade);
+    }
+    const M any = hn::Or(beside, cap);
+    hn::Store(hn::IfThenElseZero(any, s.height), d, out.height.data() + i);
+    hn::Store(hn::IfThenElseZero(any, s.x), d, out.slope_x.data() + i);
+    hn::Store(hn::IfThenElseZero(any, hn::Neg(s.y)), d, out.slope_y.data() + i);
+    hn::Store(hn::IfThenElseZero(any, coverage), d, out.coverage.data() + i);
+  }
+
+ private:
+  Values Across(V u, V half_width) const {
+    const V radius =
+        hn::Min(hn::Div(hn::Set(d, jump_radius), half_width), hn::Set(d, largest_jump_share));
+    if (profile_.shape() != ProfileShape::Custom) {
+      return shape_at(d, profile_.shape(), profile_.level(), u, radius);
+    }
+    alignas(64) std::array<float, most_lanes> at;
+    alignas(64) std::array<float, most_lanes> slope;
+    const M valid = hn::Le(hn::Abs(u), hn::Set(d, 1.0F));  // elsewhere nobody asks
+    hn::Store(hn::IfThenElseZero(valid, u), d, at.data());
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+      const Profile::Value value = profile_.at(at[k]);
+      at[k] = value.height;
+      slope[k] = value.slope;
+    }
+    return {hn::Load(d, at.data()), hn::Load(d, slope.data())};
+  }
+
+  Sample Beside(const Lanes& lanes, const LinePlaces& places, std::size_t i) const {
+    const V side = hn::Load(d, places.side.data() + i);
+    const V u = hn::Div(hn::Mul(side, lanes.distance), lanes.half_width);
+    const Values h = Across(u, lanes.half_width);
+    const V amplitude = hn::Mul(hn::Set(d, height_), lanes.fade);
+    const V rise = hn::Mul(amplitude, h.slope);
+    const V steep = hn::Div(rise, lanes.half_width);
+    Sample s{hn::Mul(amplitude, h.height), hn::Mul(steep, hn::Mul(side, lanes.x)),
+             hn::Mul(steep, hn::Mul(side, lanes.y)), u};
+    if (even_) return s;
+    // Where width or fade change along the line.
+    const V along_x = hn::Load(d, places.along_x.data() + i);
+    const V along_y = hn::Load(d, places.along_y.data() + i);
+    const V fading = hn::Mul(hn::Mul(hn::Set(d, height_), lanes.Of(segments_.fade_rate)), h.height);
+    const V widening =
+        hn::Div(hn::Mul(hn::Mul(rise, u), lanes.Of(segments_.half_width_rate)), lanes.half_width);
+    const V rate = hn::Sub(fading, widening);
+    const M even = hn::RebindMask(d, hn::Lt(lanes.Of(segments_.even), hn::Zero(di)));
+    s.x = hn::IfThenElse(even, s.x, hn::Add(s.x, hn::Mul(rate, along_x)));
+    s.y = hn::IfThenElse(even, s.y, hn::Add(s.y, hn::Mul(rate, along_y)));
+    return s;
+  }
+
+  Sample Cap(const Lanes& lanes) const {
+    const V half = hn::Set(d, 0.5F);
+    const V u = hn::Div(lanes.distance, lanes.half_width);
+    const Values l = Across(u, lanes.half_width);
+    const Values r = Across(hn::Neg(u), lanes.half_width);
+    const V even = hn::Mul(half, hn::Add(l.height, r.height));
+    const V odd = hn::Mul(half, hn::Sub(l.height, r.height));
+    const V even_slope = hn::Mul(half, hn::Sub(l.slope, r.slope));
+    const V odd_slope = hn::Mul(half, hn::Add(l.slope, r.slope));
+    // Left as seen, although y runs down.
+    const V left_x = lanes.Of(segments_.dy);
+    const V left_y = hn::Neg(lanes.Of(segments_.dx));
+    const M away = hn::Gt(lanes.distance, hn::Set(d, 1e-5F));
+    const V x = hn::Div(lanes.x, lanes.distance);
+    const V y = hn::Div(lanes.y, lanes.distance);
+    const V sine = hn::IfThenElseZero(away, Dot(x, y, left_x, left_y));
+    const V middle = hn::Div(odd_slope, lanes.half_width);
+    const V outward = hn::Div(hn::Add(even_slope, hn::Mul(sine, odd_slope)), lanes.half_width);
+    const V around = hn::Div(odd, lanes.distance);
+    const auto gradient = [&](V along, V left) {
+      const V turned = hn::Mul(around, hn::Sub(left, hn::Mul(sine, along)));
+      return hn::IfThenElse(away, hn::Add(hn::Mul(outward, along), turned), hn::Mul(middle, left));
+    };
+    const V amplitude = hn::Mul(hn::Set(d, height_), lanes.fade);
+    return {hn::Mul(amplitude, hn::Add(even, hn::Mul(sine, odd))),
+            hn::Mul(gradient(x, left_x), amplitude), hn::Mul(gradient(y, left_y), amplitude), u};
+  }
+
+  /// smoothstep() from `low` on, `span` wide.
+  static V Smooth(V x, float low, float span) {
+    const V zero = hn::Zero(d);
+    const V one = hn::Set(d, 1.0F);
+    const V share = hn::Div(hn::Sub(x, hn::Set(d, low)), hn::Set(d, span));
+    const V t = hn::Min(hn::Max(share, zero), one);
+    return hn::Mul(hn::Mul(t, t), hn::Sub(hn::Set(d, 3.0F), hn::Mul(hn::Set(d, 2.0F), t)));
+  }
+
+  V Coverage(V u, V fade) const {
+    if (coverage_ == FieldCoverage::Inside) return Smooth(u, -1.0F, 1.0F);
+    return hn::Mul(fade, hn::Sub(hn::Set(d, 1.0F), Smooth(hn::Abs(u), 0.7F, 1.0F - 0.7F)));
+  }
+
+  const SegmentColumns& segments_;
+  const Profile& profile_;
+  float height_;
+  FieldCoverage coverage_;
+  bool even_;
+};
+
+void LineSamplesOf(const SegmentColumns& segments, const Profile& profile, float height,
+                   FieldCoverage coverage, bool even, const LinePlaces& places, FieldCell& out) {
+  const Sampler sampler(segments, profile, height, coverage, even);
+  for (std::size_t i = 0; i < out.height.size(); i += hn::Lanes(d)) sampler.Run(places, i, out);
+}
+
+}  // namespace normalshop::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace normalshop {
+
+HWY_EXPORT(LineSamplesOf);
+
+void line_samples(const SegmentColumns& segments, const Profile& profile, float height,
+                  FieldCoverage coverage, bool even, const LinePlaces& places, FieldCell& out) {
+  HWY_DYNAMIC_DISPATCH(LineSamplesOf)(segments, profile, height, coverage, even, places, out);
+}
+
+}  // namespace normalshop
+#endif
