@@ -1,5 +1,8 @@
 #include "normalshop/chart/edit_reach.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "normalshop/core/rect.h"
 #include "normalshop/core/sample.h"
 
@@ -15,18 +18,19 @@ EditReach::EditReach(const EditingChart& chart)
 /// Brings blocks_ up to date where the blocks of exact_ have changed.
 void EditReach::dilate(const Rect& blocks) {
   const Rect around = intersect(grow(blocks, 1), exact_.rect());
+  std::vector<std::uint8_t> column(static_cast<std::size_t>(exact_.width()) + 2, 0);
   for (int y = around.y0; y < around.y1; ++y) {
-    std::fill(blocks_.row(y) + around.x0, blocks_.row(y) + around.x1, 0);
-  }
-  const Rect sources = intersect(grow(around, 1), exact_.rect());
-  for (int y = sources.y0; y < sources.y1; ++y) {
-    for (int x = sources.x0; x < sources.x1; ++x) {
-      if (exact_(x, y) == 0) continue;
-      const Rect marked = intersect({x - 1, y - 1, x + 2, y + 2}, around);
-      for (int j = marked.y0; j < marked.y1; ++j) {
-        std::fill_n(blocks_.row(j) + marked.x0, marked.width(), 1);
-      }
+    const std::uint8_t* above = exact_.row(std::max(y - 1, 0));
+    const std::uint8_t* here = exact_.row(y);
+    const std::uint8_t* below = exact_.row(std::min(y + 1, exact_.height() - 1));
+    const int first = std::max(around.x0 - 1, 0);
+    const int end = std::min(around.x1 + 1, exact_.width());
+    std::uint8_t* any = column.data() + 1;
+    for (int x = first; x < end; ++x) {
+      any[x] = static_cast<std::uint8_t>(above[x] | here[x] | below[x]);
     }
+    std::int32_t* marks = blocks_.row(y);
+    for (int x = around.x0; x < around.x1; ++x) marks[x] = any[x - 1] | any[x] | any[x + 1];
   }
 }
 

@@ -1,16 +1,16 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "normalshop/chart/pull.h"
 #include "normalshop/core/parallel.h"
+#include "normalshop/core/pixel_blocks.h"
 
 /// Where in its chart an edit acts, private to floor 4.
 namespace normalshop {
 
 /// Side of a block of pixels.
-inline constexpr int edit_block = 8;
+inline constexpr int edit_block = PixelBlocks::side;
 
 /// The blocks of a chart within which an edit changes something, to skip all others. The chart has
 /// its weight: where that is 0 nothing acts.
@@ -23,12 +23,15 @@ class EditReach {
   template <class Acts>
   EditReach(const EditingChart& chart, const Rect& region, const Acts& acts) : EditReach(chart) {
     region_ = intersect(region, chart.weight.rect());
-    update(region_, acts);
+    PixelBlocks all(chart.weight.width(), chart.weight.height());
+    all.reset(region_);
+    all.mark_all();
+    update(all, acts);
   }
 
-  /// Asks anew in all blocks that meet `changed`.
+  /// Asks anew in marked blocks.
   template <class Acts>
-  void update(const Rect& changed, const Acts& acts);
+  void update(const PixelBlocks& changed, const Acts& acts);
 
   const ChartGrid& grid() const { return chart_.grid; }
   const EditingChart& chart() const { return chart_; }
@@ -46,6 +49,8 @@ class EditReach {
 
  private:
   using Blocks = Image<std::uint8_t>;
+  template <class Acts>
+  bool any_acts(int block_x, int block_y, const Acts& acts) const;
   void dilate(const Rect& blocks);
 
   const EditingChart& chart_;
@@ -55,26 +60,29 @@ class EditReach {
 };
 
 template <class Acts>
-void EditReach::update(const Rect& changed, const Acts& acts) {
-  constexpr int side = edit_block;
-  const Rect pixels = intersect(changed, region_);
-  if (pixels.empty()) return;
-  const Rect blocks{pixels.x0 / side, pixels.y0 / side, (pixels.x1 - 1) / side + 1,
-                    (pixels.y1 - 1) / side + 1};
+void EditReach::update(const PixelBlocks& changed, const Acts& acts) {
+  const Rect& blocks = changed.blocks();
   parallel_for(static_cast<std::size_t>(blocks.height()), 4, [&](std::size_t a, std::size_t b) {
-    for (int by = blocks.y0 + static_cast<int>(a); by < blocks.y0 + static_cast<int>(b); ++by) {
-      std::uint8_t* row = exact_.row(by);
-      std::fill(row + blocks.x0, row + blocks.x1, std::uint8_t{0});
-      const Rect part =
-          intersect({blocks.x0 * side, by * side, blocks.x1 * side, (by + 1) * side}, region_);
-      for (int y = part.y0; y < part.y1; ++y) {
-        for (int x = part.x0; x < part.x1; ++x) {
-          if (row[x / side] == 0 && chart_.weight(x, y) > 0.0F && acts(x, y)) row[x / side] = 1;
-        }
+    for (int y = blocks.y0 + static_cast<int>(a); y < blocks.y0 + static_cast<int>(b); ++y) {
+      for (int x = blocks.x0; x < blocks.x1; ++x) {
+        if (changed.marked(x, y)) exact_(x, y) = any_acts(x, y, acts) ? 1 : 0;
       }
     }
   });
   dilate(blocks);
+}
+
+template <class Acts>
+bool EditReach::any_acts(int block_x, int block_y, const Acts& acts) const {
+  const int x0 = block_x * edit_block;
+  const int y0 = block_y * edit_block;
+  const Rect pixels = intersect({x0, y0, x0 + edit_block, y0 + edit_block}, region_);
+  for (int y = pixels.y0; y < pixels.y1; ++y) {
+    for (int x = pixels.x0; x < pixels.x1; ++x) {
+      if (chart_.weight(x, y) > 0.0F && acts(x, y)) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace normalshop

@@ -21,7 +21,7 @@ EditSampler::EditSampler(const EditingChart& chart, const ChartEdit& edit, EditR
   assert(edit.change.rect() == all && (edit.coverage.empty() || edit.coverage.rect() == all));
 }
 
-void EditSampler::update(const Rect& changed) {
+void EditSampler::update(const PixelBlocks& changed) {
   reach_.update(changed, [this](int x, int y) { return acts(edit_, x, y); });
 }
 

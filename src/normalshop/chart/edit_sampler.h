@@ -15,8 +15,8 @@ class EditSampler {
   static EditSampler growing(const EditingChart& chart, const ChartEdit& edit) {
     return {chart, edit, EditReach(chart)};
   }
-  /// The edit has changed at these pixels.
-  void update(const Rect& changed);
+  /// The edit has changed in marked blocks alone.
+  void update(const PixelBlocks& changed);
 
   const EditReach& reach() const { return reach_; }
   const ChartGrid& grid() const { return reach_.grid(); }

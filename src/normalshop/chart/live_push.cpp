@@ -11,18 +11,16 @@ struct LivePush::State {
         const EditDirection& direction, SlopeView change, MaskView coverage)
       : edit{direction, change, coverage, chart.weight.rect()},
         sampler(EditSampler::growing(chart, edit)),
-        everywhere(chart, chart.weight.rect(), [](int, int) { return true; }),
-        changed(change, coverage) {
+        everywhere(chart, chart.weight.rect(), [](int, int) { return true; }) {
     for (std::size_t i = 0; i < storage.sets.size(); ++i) {
       sets.push_back(std::make_unique<LiveSet>(mesh, storage.sets[i], static_cast<std::uint32_t>(i),
-                                               sampler, everywhere, changed));
+                                               sampler, everywhere));
     }
   }
 
   ChartEdit edit;
   EditSampler sampler;
   EditReach everywhere;
-  ChangedBlocks changed;
   std::vector<std::unique_ptr<LiveSet>> sets;
 };
 
@@ -33,15 +31,21 @@ LivePush::LivePush(const Mesh& mesh, const StorageAtlas& storage, const EditingC
 LivePush::~LivePush() = default;
 
 const std::vector<MapTile>& LivePush::update(const Rect& changed, StorageAtlas& storage) {
+  PixelBlocks blocks(state_->edit.region.width(), state_->edit.region.height());
+  blocks.reset(changed);
+  blocks.mark_all();
+  return update(blocks, storage);
+}
+
+const std::vector<MapTile>& LivePush::update(const PixelBlocks& changed, StorageAtlas& storage) {
   constexpr int read_beyond = 3;  // pixels, by a bicubic kernel
   tiles_.clear();
   state_->sampler.update(changed);
-  state_->changed.update(changed);
-  const Rect near = intersect(grow(changed, read_beyond), state_->edit.region);
-  if (near.empty()) return tiles_;
+  if (changed.region().empty()) return tiles_;
+  const Rect near = intersect(grow(changed.region(), read_beyond), state_->edit.region);
   for (std::size_t i = 0; i < state_->sets.size(); ++i) {
     const int columns = NormalMap::tiles_along(storage.sets[i].normals.width());
-    for (const int tile : state_->sets[i]->update(near, storage.sets[i].normals)) {
+    for (const int tile : state_->sets[i]->update(near, changed, storage.sets[i].normals)) {
       tiles_.push_back({static_cast<std::uint32_t>(i), tile % columns, tile / columns});
     }
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "normalshop/chart/push.h"
+#include "normalshop/core/pixel_blocks.h"
 
 namespace normalshop {
 
@@ -33,7 +34,9 @@ class LivePush {
   LivePush& operator=(const LivePush&) = delete;
 
   /// Stores what the edit has become, given that since the last time change and coverage are
-  /// different in these pixels only. Returns the tiles that may look different, by set and row.
+  /// different in marked blocks only. Returns the tiles that may look different, by set and row.
+  const std::vector<MapTile>& update(const PixelBlocks& changed, StorageAtlas& storage);
+  /// The same for all blocks that meet these pixels.
   const std::vector<MapTile>& update(const Rect& changed, StorageAtlas& storage);
   /// Of all updates together, given what they stored: `visited` counts a texel once for each update
   /// that came to it, `largest_change` is from what the maps held before.

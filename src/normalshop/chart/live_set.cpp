@@ -11,20 +11,28 @@ namespace {
 
 constexpr auto all_triangles = [](std::uint32_t) { return true; };
 
+/// Do any of these blocks hold what these texels read?
+bool meets(const PixelBlocks& blocks, const SeenTexels& seen) {
+  constexpr int beyond = 3;  // pixels, of a bicubic kernel
+  const auto block = [](float pixel) {
+    return static_cast<int>(std::max(pixel, 0.0F)) / PixelBlocks::side;
+  };
+  return blocks.any({block(seen.left - beyond), block(seen.top - beyond),
+                     block(seen.right + beyond) + 1, block(seen.bottom + beyond) + 1});
+}
+
 }  // namespace
 
 LiveSet::LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index,
-                 const EditSampler& sampler, const EditReach& everywhere,
-                 const ChangedBlocks& changed)
+                 const EditSampler& sampler, const EditReach& everywhere)
     : before_(set.normals),
       everywhere_(everywhere),
-      changed_(changed),
       editor_(mesh, sampler, set.texels, before_),
       places_(mesh, set.texels, index, sampler.grid()),
       tiles_(static_cast<std::size_t>(NormalMap::tiles_along(before_.width())) *
              static_cast<std::size_t>(NormalMap::tiles_along(before_.height()))) {}
 
-std::vector<int> LiveSet::update(const Rect& pixels, NormalMap& map) {
+std::vector<int> LiveSet::update(const Rect& pixels, const PixelBlocks& changed, NormalMap& map) {
   std::vector<int> tiles = places_.meeting(pixels);
   if (tiles.empty()) return tiles;
   find_seen(tiles);
@@ -38,7 +46,7 @@ std::vector<int> LiveSet::update(const Rect& pixels, NormalMap& map) {
   parallel_for(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     TexelLanes lanes;
     for (std::size_t i = begin; i < end; ++i) {
-      edit_tile(tiles[i], shared_writes, lanes, map);
+      edit_tile(tiles[i], changed, shared_writes, lanes, map);
     }
   });
   put(shared_writes, map);
@@ -64,13 +72,13 @@ void LiveSet::find_seen(const std::vector<int>& tiles) {
 }
 
 /// The tile's texels by their owners. Those on which the edit does not act become what they were.
-void LiveSet::edit_tile(int index, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
-                        NormalMap& map) {
+void LiveSet::edit_tile(int index, const PixelBlocks& blocks, const std::vector<TexelWrite>& shared,
+                        TexelLanes& lanes, NormalMap& map) {
   Tile& tile = tiles_[static_cast<std::size_t>(index)];
   // What shared texels become may depend on pixels far away.
   const bool whole = places_.shares(index);
   for (const SeenTexels& seen : tile.seen) {
-    if (!whole && !changed_.meet(seen.left, seen.top, seen.right, seen.bottom)) continue;
+    if (!whole && !meets(blocks, seen)) continue;
     tile.visited += static_cast<std::size_t>(seen.count);
     const bool acts = seen.load(editor_.sampler().reach(), lanes) && editor_.edit_weighed(lanes);
     for (int i = 0; i < seen.count; ++i) {

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "normalshop/chart/changed_blocks.h"
 #include "normalshop/chart/normal_editor.h"
 #include "normalshop/chart/push_tally.h"
 #include "normalshop/chart/seen_texels.h"
 #include "normalshop/chart/tile_places.h"
+#include "normalshop/core/pixel_blocks.h"
 
 /// One texture set's part of a LivePush, private to floor 4.
 namespace normalshop {
@@ -17,13 +17,13 @@ namespace normalshop {
 /// so that they become what push() makes of them.
 class LiveSet {
  public:
-  /// `sampler`, `everywhere` (each pixel of the chart acts) and `changed` stay with the LivePush.
+  /// `sampler` and `everywhere` (each pixel of the chart acts) stay with the LivePush.
   LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index, const EditSampler& sampler,
-          const EditReach& everywhere, const ChangedBlocks& changed);
+          const EditReach& everywhere);
 
-  /// Stores what the edit makes of all texels in these pixels, given what has changed there.
-  /// Returns the tiles that may look different.
-  std::vector<int> update(const Rect& pixels, NormalMap& map);
+  /// Stores what the edit makes of all texels in these pixels, given which blocks have changed
+  /// there. Returns the tiles that may look different.
+  std::vector<int> update(const Rect& pixels, const PixelBlocks& changed, NormalMap& map);
   /// Of all updates: what they came to, and how `map` differs from before.
   PushTally tally(const NormalMap& map) const;
   const NormalMap& before() const { return before_; }
@@ -38,8 +38,8 @@ class LiveSet {
     std::bitset<side * side> changed;  ///< texels
   };
   void find_seen(const std::vector<int>& tiles);
-  void edit_tile(int index, const std::vector<TexelWrite>& shared, TexelLanes& lanes,
-                 NormalMap& map);
+  void edit_tile(int index, const PixelBlocks& blocks, const std::vector<TexelWrite>& shared,
+                 TexelLanes& lanes, NormalMap& map);
   template <class Item>
   void restore(const std::vector<Item>& items, NormalMap& map);
   void put(const std::vector<TexelWrite>& writes, NormalMap& map);
@@ -49,7 +49,6 @@ class LiveSet {
 
   NormalMap before_;
   const EditReach& everywhere_;
-  const ChangedBlocks& changed_;
   NormalEditor editor_;
   TilePlaces places_;
   std::vector<Tile> tiles_;

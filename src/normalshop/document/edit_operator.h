@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "normalshop/core/border.h"
+#include "normalshop/core/pixel_blocks.h"
 #include "normalshop/document/assets.h"
 #include "normalshop/document/field_reader.h"
 #include "normalshop/rgbn/stroke.h"
@@ -114,6 +115,14 @@ class EditOperator {
   virtual bool is_local() const { return false; }
   /// Fills change and coverage (both zero before) and returns where they are not zero.
   virtual Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const = 0;
+  /// Makes what run() made of the strokes `before`, with all else as it is, what it makes of
+  /// input.strokes in drawn.region(), and marks the blocks that it wrote: all others stay. Coverage
+  /// may be empty. False: it does not do that, and has written nothing. Only for operators that do
+  /// not read.
+  virtual bool rerun(const OperatorInput& /*input*/, const std::vector<Stroke>& /*before*/,
+                     SlopeSpan /*change*/, MaskSpan /*coverage*/, PixelBlocks& /*drawn*/) const {
+    return false;
+  }
   /// An operator that moves_colors() writes what they become, and returns where.
   virtual Rect run_colors(const OperatorInput&, ColorSpan) const { return {}; }
 };

@@ -9,6 +9,7 @@
 #include "normalshop/core/stopwatch.h"
 #include "normalshop/document/apply_edit.h"
 #include "normalshop/document/prepare_edit.h"
+#include "normalshop/document/region_before.h"
 #include "normalshop/document/surface_check.h"
 #include "normalshop/surface/seam_fit.h"
 
@@ -47,8 +48,9 @@ struct LiveEdit::State {
         open(open_facing(edit, view, owner)),
         result(empty_result(open.chart.grid.width(), open.chart.grid.height())),
         push(owner.mesh(), owner.storage(), open.chart, open.direction, result.change,
-             open.source.replaces ? result.coverage.view() : MaskView()) {
-    if (owner.file()) before.emplace(owner.storage(), edit.operation->moves_colors());
+             open.source.replaces ? result.coverage.view() : MaskView()),
+        drawn(open.chart.grid.width(), open.chart.grid.height()) {
+    if (owner.file()) maps.emplace(owner.storage(), edit.operation->moves_colors());
   }
 
   Document& document;
@@ -57,7 +59,9 @@ struct LiveEdit::State {
   OpenChart open;
   OperatorResult result;
   LivePush push;
-  std::optional<MapsBefore> before;  // of a document on file
+  PixelBlocks drawn;  // by the last draw()
+  RegionBefore before;
+  std::optional<MapsBefore> maps;  // before the edit, of a document on file
 };
 
 LiveEdit::LiveEdit(Document& document, Edit edit)
@@ -94,25 +98,45 @@ Rect LiveEdit::changed_region(const std::vector<UnitStroke>& before) const {
   return changeable_pixels(state_->open.chart.grid, intersect(extent, place.view));
 }
 
-/// Makes the result in a region anew.
-void LiveEdit::redraw(const Rect& region) {
-  OperatorResult& result = state_->result;
+/// Makes the result anew in the region of `drawn`, and marks where it may have become different.
+/// `before`: the strokes that it was made of; null where that is not known.
+void LiveEdit::redraw(const std::vector<UnitStroke>* before) {
+  State& state = *state_;
+  const ChartGrid& grid = state.open.chart.grid;
+  if (before != nullptr && !state.edit.strokes.empty() &&
+      operate_again(state.edit, state.open, operator_input(state.edit, state.open),
+                    to_pixels(*before, grid), state.result, state.drawn)) {
+    return;
+  }
+  redraw_all();
+}
+
+void LiveEdit::redraw_all() {
+  State& state = *state_;
+  OperatorResult& result = state.result;
+  const Rect& region = state.drawn.region();
+  state.before.take(region, result);
   for_pixels(region, [&](int x, int y) {
     result.change(x, y) = Vec2f(0.0F, 0.0F);
     result.coverage(x, y) = 0.0F;
   });
-  if (state_->edit.strokes.empty()) return;
-  OperatorInput input = operator_input(state_->edit, state_->open);
-  input.region = region;
-  operate(state_->edit, state_->open, input, result);
+  if (!state.edit.strokes.empty()) {
+    OperatorInput input = operator_input(state.edit, state.open);
+    input.region = region;
+    operate(state.edit, state.open, input, result);
+  }
+  state.before.mark_different(result, state.drawn);
 }
 
-const std::vector<MapTile>& LiveEdit::push(const Rect& region) {
-  EditTimes& times = state_->open.report.times;
+const std::vector<MapTile>& LiveEdit::push(const Rect& region,
+                                           const std::vector<UnitStroke>* before) {
+  State& state = *state_;
+  EditTimes& times = state.open.report.times;
   Stopwatch watch;
-  redraw(region);
+  state.drawn.reset(region);
+  redraw(before);
   times.operate += watch.lap();
-  const std::vector<MapTile>& tiles = state_->push.update(region, state_->document.storage_);
+  const std::vector<MapTile>& tiles = state.push.update(state.drawn, state.document.storage_);
   times.push += watch.lap();
   return tiles;
 }
@@ -126,10 +150,10 @@ const std::vector<MapTile>& LiveEdit::draw(std::vector<UnitStroke> strokes) {
   if (region.empty()) return none_;
   try {
     check_near_view(edit, state_->view);
-    return push(region);
+    return push(region, &strokes);
   } catch (...) {
     std::swap(edit.strokes, strokes);
-    push(region);
+    push(region, nullptr);
     throw;
   }
 }
@@ -161,7 +185,7 @@ EditReport LiveEdit::complete() {
             .changed;
   }
   report.times.push += watch.lap();
-  document.record(std::move(state.edit), report, state.before ? &*state.before : nullptr);
+  document.record(std::move(state.edit), report, state.maps ? &*state.maps : nullptr);
   return report;
 }
 

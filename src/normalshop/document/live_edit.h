@@ -41,8 +41,9 @@ class LiveEdit {
  private:
   friend class Document;
   LiveEdit(Document& document, Edit edit);
-  void redraw(const Rect& region);
-  const std::vector<MapTile>& push(const Rect& region);
+  void redraw(const std::vector<UnitStroke>* before);
+  void redraw_all();
+  const std::vector<MapTile>& push(const Rect& region, const std::vector<UnitStroke>* before);
   EditReport complete();
   Rect changed_region(const std::vector<UnitStroke>& before) const;
 

@@ -8,6 +8,29 @@ namespace normalshop {
 
 namespace {
 
+void scale(float factor, OperatorResult& result) {
+  if (factor == 1.0F) return;
+  for_pixels(result.region, [&](int x, int y) {
+    result.change(x, y) *= factor;
+    result.coverage(x, y) *= factor;
+  });
+}
+
+/// body(x, y) for the pixels of marked blocks.
+template <class Body>
+void for_pixels(const PixelBlocks& blocks, const Body& body) {
+  const Rect& all = blocks.blocks();
+  normalshop::for_pixels(all, [&](int block_x, int block_y) {
+    if (!blocks.marked(block_x, block_y)) return;
+    const Rect pixels = blocks.pixels(block_x, block_y);
+    for (int y = pixels.y0; y < pixels.y1; ++y) {
+      for (int x = pixels.x0; x < pixels.x1; ++x) body(x, y);
+    }
+  });
+}
+
+}  // namespace
+
 std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const ChartGrid& grid) {
   std::vector<Stroke> out;
   for (const UnitStroke& stroke : strokes) {
@@ -20,16 +43,6 @@ std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const Char
   }
   return out;
 }
-
-void scale(float factor, OperatorResult& result) {
-  if (factor == 1.0F) return;
-  for_pixels(result.region, [&](int x, int y) {
-    result.change(x, y) *= factor;
-    result.coverage(x, y) *= factor;
-  });
-}
-
-}  // namespace
 
 Extent intersect(const Extent& a, const Extent& b) {
   return {a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)};
@@ -65,6 +78,13 @@ void multiply(MaskView factor, OperatorResult& result) {
   });
 }
 
+void multiply(MaskView factor, const PixelBlocks& drawn, OperatorResult& result) {
+  for_pixels(drawn, [&](int x, int y) {
+    result.change(x, y) *= factor(x, y);
+    result.coverage(x, y) *= factor(x, y);
+  });
+}
+
 OperatorResult empty_result(int width, int height) {
   return {SlopeImage(width, height, Vec2f(0.0F, 0.0F)), MaskImage(width, height, 0.0F), {}};
 }
@@ -76,6 +96,22 @@ void run_operator(const Edit& edit, const OperatorInput& input, OperatorResult& 
     throw InvalidInput(edit.path + ": " + error.what());
   }
   scale(edit.strength, result);
+}
+
+bool rerun_operator(const Edit& edit, const OperatorInput& input, const std::vector<Stroke>& before,
+                    bool covers, OperatorResult& result, PixelBlocks& drawn) {
+  const MaskSpan coverage = covers ? result.coverage.span() : MaskSpan();
+  try {
+    if (!edit.operation->rerun(input, before, result.change, coverage, drawn)) return false;
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(edit.path + ": " + error.what());
+  }
+  if (edit.strength == 1.0F) return true;
+  for_pixels(drawn, [&](int x, int y) {
+    result.change(x, y) *= edit.strength;
+    if (covers) result.coverage(x, y) *= edit.strength;
+  });
+  return true;
 }
 
 }  // namespace normalshop

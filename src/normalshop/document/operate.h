@@ -30,8 +30,14 @@ struct OperatorResult {
   Rect region;  ///< both are 0 outside
 };
 OperatorResult empty_result(int width, int height);
+/// The strokes in pixels of a chart.
+std::vector<Stroke> to_pixels(const std::vector<UnitStroke>& strokes, const ChartGrid& grid);
 /// Fills `result`, which is 0 there, in input.region.
 void run_operator(const Edit& edit, const OperatorInput& input, OperatorResult& result);
+
+/// EditOperator::rerun() with `strength`. `covers`: whether coverage counts; else it stays.
+bool rerun_operator(const Edit& edit, const OperatorInput& input, const std::vector<Stroke>& before,
+                    bool covers, OperatorResult& result, PixelBlocks& drawn);
 
 /// What Edit::spray makes of a unit normal whose z is the cosine of its angle to the viewer.
 class SprayShare {
@@ -44,5 +50,7 @@ class SprayShare {
 };
 /// Multiplies the result in its region by a factor for each pixel.
 void multiply(MaskView factor, OperatorResult& result);
+/// The same in marked blocks.
+void multiply(MaskView factor, const PixelBlocks& drawn, OperatorResult& result);
 
 }  // namespace normalshop

@@ -1,6 +1,7 @@
 #include "normalshop/document/prepare_edit.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -336,6 +337,15 @@ void operate(const Edit& edit, const OpenChart& open, const OperatorInput& input
     replace_details(source.grazing, source.finer, source.slopes, source.base, result);
   }
   if (!source.spray.empty()) multiply(source.spray, result);
+}
+
+bool operate_again(const Edit& edit, const OpenChart& open, const OperatorInput& input,
+                   const std::vector<Stroke>& before, OperatorResult& result, PixelBlocks& drawn) {
+  const ChartSource& source = open.source;
+  if (!rerun_operator(edit, input, before, source.replaces, result, drawn)) return false;
+  assert(!(source.finer > 0.0F) && source.grazing.empty());
+  if (!source.spray.empty()) multiply(source.spray, drawn, result);
+  return true;
 }
 
 ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const OperatorInput& input) {

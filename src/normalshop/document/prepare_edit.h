@@ -61,6 +61,11 @@ OperatorInput operator_input(const Edit& edit, const OpenChart& open);
 /// Fills the result, which is 0 there, in input.region.
 void operate(const Edit& edit, const OpenChart& open, const OperatorInput& input,
              OperatorResult& result);
+/// Makes a result of the strokes `before` one of input.strokes in drawn.region(), and marks where
+/// it may have become different. False: the operator makes it anew or not at all; nothing has
+/// changed.
+bool operate_again(const Edit& edit, const OpenChart& open, const OperatorInput& input,
+                   const std::vector<Stroke>& before, OperatorResult& result, PixelBlocks& drawn);
 /// What becomes of the chart's colours, all of them; of operators that move colours.
 ColorResult operate_on_colors(const Edit& edit, const OpenChart& open, const OperatorInput& input);
 

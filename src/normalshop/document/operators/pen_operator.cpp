@@ -57,6 +57,14 @@ class PenOperator : public EditOperator {
                scale_lengths(options_, 1.0F / input.pixel));
   }
 
+  bool rerun(const OperatorInput& input, const std::vector<Stroke>& before, SlopeSpan change,
+             MaskSpan coverage, PixelBlocks& drawn) const override {
+    if (options_.closed) return false;  // all that they enclose may change
+    redraw_pen(change, coverage, before, input.strokes, scale_lengths(options_, 1.0F / input.pixel),
+               drawn);
+    return true;
+  }
+
  private:
   void check_curve(const FieldReader& curve) const {
     const std::vector<FieldReader> points = curve.items();
