@@ -233,6 +233,87 @@ TEST(Pen, RegionsAndThreadsGiveTheSamePixels) {
   }
 }
 
+Stroke spiral(int points) {
+  Stroke s;
+  for (int i = 0; i < points; ++i) {
+    const float t = 0.35F * static_cast<float>(i);
+    const float radius = 12.0F + 3.0F * t;
+    s.push_back({{100.0F + radius * std::cos(t), 96.0F + radius * std::sin(t)},
+                 0.6F + 0.4F * std::sin(2.0F * t)});
+  }
+  return s;
+}
+
+std::vector<PenOptions> options_to_redraw() {
+  PenOptions bump = options_of(ProfileShape::Bump, 30.0F, 4.0F);
+  bump.smooth = true;
+  PenOptions crease = options_of(ProfileShape::Crease, 9.0F, 1.0F);
+  PenOptions tapered = bump;
+  tapered.taper = 40.0F;
+  PenOptions custom = options_of(ProfileShape::Custom, 20.0F, 2.0F);
+  custom.curve = Curve({{-1.0F, 0.0F}, {0.2F, 1.0F}, {1.0F, 0.5F}});
+  custom.pressure = PressureTo::None;
+  PenOptions narrow = options_of(ProfileShape::Scratch, 3.0F, 1.0F);
+  PenOptions closed = options_of(ProfileShape::Step, 12.0F, 2.0F);
+  closed.closed = true;
+  return {bump, crease, tapered, custom, narrow, closed};
+}
+
+TEST(Pen, RedrawingGivesWhatDrawingGivesBitForBit) {
+  const Stroke whole = spiral(24);
+  const Stroke other = {{{20.0F, 150.0F}}, {{150.0F, 20.0F}}, {{180.0F, 170.0F}}};
+  const auto first = [&](std::size_t points) {
+    return Stroke(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(points));
+  };
+  const std::vector<std::vector<Stroke>> steps = {
+      {first(3)}, {first(12)}, {first(13)}, {first(13), other}, {first(24), other}, {other}, {}};
+  for (const PenOptions& o : options_to_redraw()) {
+    SlopeImage slopes(200, 190, Vec2f(0.0F, 0.0F));
+    MaskImage coverage(200, 190, 0.0F);
+    PixelBlocks drawn(200, 190);
+    std::vector<Stroke> before;
+    for (const std::vector<Stroke>& strokes : steps) {
+      drawn.reset(slopes.rect());
+      redraw_pen(slopes, coverage, before, strokes, o, drawn);
+      const Drawing all(200, 190, strokes, o);
+      int different = 0;
+      for (int y = 0; y < 190; ++y) {
+        for (int x = 0; x < 200; ++x) {
+          const bool same =
+              slopes(x, y) == all.slopes(x, y) && coverage(x, y) == all.coverage(x, y);
+          different += same ? 0 : 1;
+        }
+      }
+      EXPECT_EQ(different, 0) << static_cast<int>(o.profile) << ", " << strokes.size();
+      before = strokes;
+    }
+  }
+}
+
+TEST(Pen, RedrawingLeavesWhatALongerStrokeLeavesAsItIs) {
+  const PenOptions o = options_of(ProfileShape::Bump, 60.0F, 4.0F);
+  const Stroke before = {
+      {{60.0F, 100.0F}}, {{100.0F, 100.0F}}, {{150.0F, 100.0F}}, {{240.0F, 100.0F}}};
+  Stroke after = before;
+  after.push_back({{250.0F, 100.0F}});
+  SlopeImage slopes(400, 200, Vec2f(7.0F, 7.0F));
+  PixelBlocks drawn(400, 200);
+  drawn.reset(slopes.rect());
+  redraw_pen(slopes, {}, std::vector<Stroke>{before}, std::vector<Stroke>{after}, o, drawn);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      const bool marked = drawn.marked(x / PixelBlocks::side, y / PixelBlocks::side);
+      EXPECT_EQ(slopes(x, y) != Vec2f(7.0F, 7.0F), marked) << x << ", " << y;
+      // The last segment has got a neighbour: it counts as another, and so does the one before it.
+      if (x < 70 || x > 300) {
+        EXPECT_FALSE(marked) << x << ", " << y;
+      } else if (x >= 255 && x < 275 && y >= 80 && y < 120) {
+        EXPECT_TRUE(marked) << x << ", " << y;
+      }
+    }
+  }
+}
+
 TEST(Pen, NarrowStrokesDoNotBreakUp) {
   const PenOptions o = options_of(ProfileShape::Bump, 1.5F, 1.0F);
   const Drawing d(100, 40, {{{{-10.0F, 10.0F}}, {{110.0F, 27.0F}}}}, o);

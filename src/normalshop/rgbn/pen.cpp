@@ -101,7 +101,8 @@ std::vector<FieldVertex> vertices(const Stroke& stroke, const PenOptions& o, con
   return out;
 }
 
-PolylineField make_field(std::span<const Stroke> strokes, const PenOptions& o) {
+PolylineField make_field(std::span<const Stroke> strokes, const PenOptions& o,
+                         FieldCoverage coverage) {
   check(strokes, o);
   const Profile profile({.shape = o.profile, .closed = o.closed, .curve = o.curve});
   const bool both = o.pressure == PressureTo::Both;
@@ -116,7 +117,11 @@ PolylineField make_field(std::span<const Stroke> strokes, const PenOptions& o) {
     shape.contours.push_back(vertices(line_of(stroke, o), o, fades));
     shapes.push_back(std::move(shape));
   }
-  return {shapes, profile, o.height, FieldCoverage::Band};
+  return {shapes, profile, o.height, coverage};
+}
+
+FieldCoverage wanted(MaskSpan coverage) {
+  return coverage.empty() ? FieldCoverage::None : FieldCoverage::Band;
 }
 
 int grid(const PenOptions& o) { return o.width < narrow_width ? narrow_grid : 1; }
@@ -125,7 +130,7 @@ int grid(const PenOptions& o) { return o.width < narrow_width ? narrow_grid : 1;
 
 Rect pen(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Stroke> strokes,
          const PenOptions& options) {
-  const PolylineField field = make_field(strokes, options);
+  const PolylineField field = make_field(strokes, options, wanted(coverage));
   region = intersect(region, details.rect());
   field.render(region, grid(options), [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
     write_cell(pixels, x, y, cell, details, coverage);
@@ -136,9 +141,9 @@ Rect pen(SlopeSpan details, MaskSpan coverage, Rect region, std::span<const Stro
 void redraw_pen(SlopeSpan details, MaskSpan coverage, std::span<const Stroke> before,
                 std::span<const Stroke> strokes, const PenOptions& options, PixelBlocks& drawn) {
   static_assert(PixelBlocks::side == cell_side);
-  const PolylineField field = make_field(strokes, options);
-  field.render_changes(make_field(before, options), drawn.region(), grid(options),
-                       [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
+  const PolylineField field = make_field(strokes, options, wanted(coverage));
+  field.render_changes(make_field(before, options, FieldCoverage::None), drawn.region(),
+                       grid(options), [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
                          write_cell(pixels, x, y, cell, details, coverage);
                          drawn.mark(x / cell_side, y / cell_side);
                        });
@@ -146,7 +151,7 @@ void redraw_pen(SlopeSpan details, MaskSpan coverage, std::span<const Stroke> be
 
 Rect pen_height(MaskSpan height, Rect region, std::span<const Stroke> strokes,
                 const PenOptions& options) {
-  const PolylineField field = make_field(strokes, options);
+  const PolylineField field = make_field(strokes, options, FieldCoverage::None);
   region = intersect(region, height.rect());
   field.render(region, grid(options), [&](const Rect& pixels, int x, int y, const FieldCell& cell) {
     for (int j = pixels.y0; j < pixels.y1; ++j) {

@@ -11,22 +11,13 @@ namespace {
 constexpr float touching = 1e-3F;
 constexpr float touching_bent = 0.5F;  // inside is told by straight lines
 
-void put(const FieldSample& sample, std::size_t k, FieldCell& out) {
-  out.height[k] = sample.height;
-  out.slope_x[k] = sample.slope.x();
-  out.slope_y[k] = sample.slope.y();
-  out.coverage[k] = sample.coverage;
-}
-
-/// Where a sample's height is larger it counts.
-void take(const FieldCell& samples, FieldCell& best) {
-  for (std::size_t k = 0; k < best.height.size(); ++k) {
-    const bool higher = std::abs(samples.height[k]) > std::abs(best.height[k]);
-    best.height[k] = higher ? samples.height[k] : best.height[k];
-    best.slope_x[k] = higher ? samples.slope_x[k] : best.slope_x[k];
-    best.slope_y[k] = higher ? samples.slope_y[k] : best.slope_y[k];
-    best.coverage[k] = std::max(best.coverage[k], samples.coverage[k]);
-  }
+/// Where its |height| is larger a sample counts.
+void add_at(const FieldSample& sample, std::size_t k, FieldCell& field) {
+  field.coverage[k] = std::max(field.coverage[k], sample.coverage);
+  if (!(std::abs(sample.height) > std::abs(field.height[k]))) return;
+  field.height[k] = sample.height;
+  field.slope_x[k] = sample.slope.x();
+  field.slope_y[k] = sample.slope.y();
 }
 
 void clear(FieldCell& cell) {
@@ -54,6 +45,17 @@ void multiply(FieldCell& cell, float factor) {
   }
 }
 
+/// Points of the cell that begins at (x, y), so far off the centres of its pixels.
+void place(int x, int y, float dx, float dy, LinePoints& points) {
+  std::size_t k = 0;
+  for (int j = 0; j < cell_side; ++j) {
+    for (int i = 0; i < cell_side; ++i, ++k) {
+      points.x[k] = static_cast<float>(x + i) + dx;
+      points.y[k] = static_cast<float>(y + j) + dy;
+    }
+  }
+}
+
 Vec2f point_at(const LinePoints& points, std::size_t k) { return {points.x[k], points.y[k]}; }
 
 }  // namespace
@@ -74,10 +76,7 @@ void PolylineField::pixels(int x, int y, const Cell& cell, int grid, FieldCell& 
     for (int i = 0; i < grid; ++i) {
       const float dx = (static_cast<float>(i) + 0.5F) / static_cast<float>(grid) - 0.5F;
       const float dy = (static_cast<float>(j) + 0.5F) / static_cast<float>(grid) - 0.5F;
-      for (std::size_t k = 0; k < points.x.size(); ++k) {
-        points.x[k] = static_cast<float>(x + static_cast<int>(k) % cell_side) + dx;
-        points.y[k] = static_cast<float>(y + static_cast<int>(k) / cell_side) + dy;
-      }
+      place(x, y, dx, dy, points);
       if (grid == 1) return sample(points, cell, out);
       sample(points, cell, samples);
       add_to(out, samples);
@@ -87,9 +86,8 @@ void PolylineField::pixels(int x, int y, const Cell& cell, int grid, FieldCell& 
 }
 
 /// The shape with the largest |height| counts.
-void PolylineField::sample(const LinePoints& points, const Cell& cell, FieldCell& best) const {
-  FieldCell samples;
-  clear(best);
+void PolylineField::sample(const LinePoints& points, const Cell& cell, FieldCell& field) const {
+  clear(field);
   const bool has_level = profile_.level() != 0.0F || coverage_ == FieldCoverage::Inside;
   const List& segments = cell.segments;
   std::size_t at = 0;
@@ -98,22 +96,18 @@ void PolylineField::sample(const LinePoints& points, const Cell& cell, FieldCell
       const std::size_t first = at;
       while (at < segments.size() && segments_[segments[at]].shape == i) ++at;
       const auto list = std::span(segments).subspan(first, at - first);
-      beside(points, shapes_[i], {list, shapes_[i].largest_half_width, cell.even, cell.bends},
-             samples);
+      add_beside(points, shapes_[i], {list, shapes_[i].largest_half_width, cell.even, cell.bends},
+                 field);
     } else if (has_level) {
-      levels(points, shapes_[i], samples);
+      for (std::size_t k = 0; k < points.x.size(); ++k) {
+        add_at(level(point_at(points, k), shapes_[i]), k, field);
+      }
     } else if (at == segments.size()) {
       break;
     } else {
       i = segments_[segments[at]].shape - 1;
-      continue;
     }
-    take(samples, best);
   }
-}
-
-void PolylineField::levels(const LinePoints& points, const Shape& shape, FieldCell& out) const {
-  for (std::size_t k = 0; k < points.x.size(); ++k) put(level(point_at(points, k), shape), k, out);
 }
 
 FieldSample PolylineField::level(const Vec2f& p, const Shape& shape) const {
@@ -124,21 +118,15 @@ FieldSample PolylineField::level(const Vec2f& p, const Shape& shape) const {
   return s;
 }
 
-void PolylineField::beside(const LinePoints& points, const Shape& shape, const LineList& list,
-                           FieldCell& out) const {
+void PolylineField::add_beside(const LinePoints& points, const Shape& shape, const LineList& list,
+                               FieldCell& field) const {
   LinePlaces places;
   line_places(columns_, list, points, places);
   if (shape.closed) turn_in(points, shape, places);
-  if (pattern_) {
-    for (std::size_t k = 0; k < places.place.size(); ++k) {
-      put(places.place[k] == line_beside ? patterned(shape, places, k) : FieldSample{}, k, out);
-    }
-  } else {
-    line_samples(columns_, profile_, height_, coverage_, list.even, places, out);
-  }
-  if (!shape.closed) return;
-  for (std::size_t k = 0; k < places.place.size(); ++k) {
-    if (places.place[k] == line_beyond) put(level(point_at(points, k), shape), k, out);
+  if (!pattern_) add_line(columns_, {profile_, height_, coverage_}, list.even, places, field);
+  for (std::size_t k = 0; (pattern_ || shape.closed) && k < places.place.size(); ++k) {
+    if (pattern_ && places.place[k] == line_beside) add_at(patterned(shape, places, k), k, field);
+    if (places.place[k] == line_beyond) add_at(level(point_at(points, k), shape), k, field);
   }
 }
 

@@ -29,6 +29,7 @@ PolylineField::PolylineField(const std::vector<FieldShape>& shapes, const Profil
                              float height, FieldCoverage coverage)
     : profile_(profile), height_(height), coverage_(coverage) {
   for (const FieldShape& shape : shapes) add(shape);
+  columns_.pad();
 }
 
 PolylineField::PolylineField(const std::vector<FieldShape>& shapes, FieldPattern pattern)

@@ -1,7 +1,9 @@
 #include "normalshop/rgbn/detail/polyline_kernels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <tuple>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normalshop/rgbn/polyline_kernels.cpp"
@@ -178,8 +180,8 @@ inline Away BentAwayOf(const SegmentColumns& s, const Of& of, V px, V py) {
   const V from_y = hn::Sub(py, of(s.ay));
   const V ahead = Dot(from_x, from_y, dx, dy);
   const V across = hn::Sub(hn::Mul(from_y, dx), hn::Mul(from_x, dy));
-  const V length = hn::Max(of(s.length), hn::Set(d, 1e-6F));
-  const V share = hn::Div(one, length);
+  const V length = of(s.length);
+  const V share = of(s.share);
   const V start = of(s.start_bend);
   const V end = of(s.end_bend);
   // b(t L) = L (start t + square t^2 + cube t^3).
@@ -327,13 +329,74 @@ void SegmentOffsetsOf(const SegmentColumns& segments, std::span<const std::uint3
     const std::size_t count = std::min(lanes, list.size() - i);
     const std::uint32_t first = list[i];
     // Neighbours in the line mostly stand side by side.
-    if (count == lanes && list[i + lanes - 1] - first == lanes - 1) {
+    if (list[i + count - 1] - first == count - 1) {
       OffsetsOf(segments, SegmentsFrom{first}, px, py, i, out);
       continue;
     }
     for (std::size_t k = 0; k < count; ++k) indices[k] = static_cast<std::int32_t>(list[i + k]);
     OffsetsOf(segments, ManySegments{hn::Load(di, indices.data())}, px, py, i, out);
   }
+}
+
+/// Beyond all squared distances that count.
+constexpr float very_far = 1e30F;
+
+/// The squared distance of the nearest of them, and which it is; `very_far` ones follow them.
+struct Closest {
+  float squared;
+  std::size_t at;
+};
+
+inline Closest ClosestOf(const SegmentOffsets& offsets, std::size_t count) {
+  const std::size_t lanes = hn::Lanes(d);
+  V least = hn::Set(d, very_far);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V squared = hn::LoadU(d, offsets.squared.data() + i);
+    least = hn::IfThenElse(hn::Lt(squared, least), squared, least);  // never what is no number
+  }
+  const V all = hn::MinOfLanes(d, least);
+  for (std::size_t i = 0;; i += lanes) {
+    const intptr_t found =
+        hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, offsets.squared.data() + i), all));
+    if (found >= 0) return {hn::GetLane(all), i + static_cast<std::size_t>(found)};
+  }
+}
+
+void NearestSegmentsOf(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                       const Circle& circle, float half_width, SegmentOffsets& offsets,
+                       std::vector<std::uint32_t>& kept) {
+  const std::size_t lanes = hn::Lanes(d);
+  SegmentOffsetsOf(segments, list, circle.center.x(), circle.center.y(), offsets);
+  std::fill_n(offsets.squared.begin() + static_cast<std::ptrdiff_t>(list.size()), lanes, very_far);
+  const Closest closest = ClosestOf(offsets, list.size());
+  const float least = std::sqrt(closest.squared);
+  const float radius = circle.radius;
+  if (!(least <= half_width + radius)) return;
+  const V turn = hn::Set(d, least > 2.0F * radius ? radius / (least - radius) : 2.0F);
+  const Vec2f away = offsets.at(closest.at) / std::max(least, 1e-6F);
+  const float farthest = least + 2.0F * radius + 0.01F;
+  std::size_t count = kept.size();
+  kept.resize(count + list.size() + lanes);
+  alignas(64) std::array<std::int32_t, most_lanes> places{};
+  for (std::size_t i = 0; i < list.size(); i += lanes) {
+    const V squared = hn::LoadU(d, offsets.squared.data() + i);
+    const M near = hn::Le(squared, hn::Set(d, farthest * farthest));
+    if (hn::AllFalse(d, near)) continue;
+    const V distance = hn::Sqrt(squared);
+    const V divisor = hn::Max(distance, hn::Set(d, 1e-6F));
+    const V x = hn::Sub(hn::Div(hn::LoadU(d, offsets.x.data() + i), divisor), hn::Set(d, away.x()));
+    const V y = hn::Sub(hn::Div(hn::LoadU(d, offsets.y.data() + i), divisor), hn::Set(d, away.y()));
+    const V change = hn::Min(hn::Add(hn::Sqrt(Dot(x, y, x, y)), turn), hn::Set(d, 2.0F));
+    const V limit =
+        hn::Add(hn::Add(hn::Set(d, least), hn::Mul(change, hn::Set(d, radius))), hn::Set(d, 0.01F));
+    const M keep = hn::And(near, hn::Le(distance, limit));
+    const std::size_t more = hn::CompressStore(hn::Iota(di, static_cast<std::int32_t>(i)),
+                                               hn::RebindMask(di, keep), di, places.data());
+    for (std::size_t k = 0; k < more; ++k) {
+      kept[count++] = list[static_cast<std::size_t>(places[k])];
+    }
+  }
+  kept.resize(count);
 }
 
 }  // namespace normalshop::HWY_NAMESPACE
@@ -344,6 +407,7 @@ namespace normalshop {
 
 HWY_EXPORT(LinePlacesOf);
 HWY_EXPORT(SegmentOffsetsOf);
+HWY_EXPORT(NearestSegmentsOf);
 
 void SegmentColumns::append(const LineSegment& s) {
   const auto flag = [](bool set) { return set ? -1 : 0; };
@@ -352,6 +416,7 @@ void SegmentColumns::append(const LineSegment& s) {
   dx.push_back(s.direction.x());
   dy.push_back(s.direction.y());
   length.push_back(s.length);
+  share.push_back(1.0F / std::max(s.length, 1e-6F));
   start_x.push_back(s.start_tangent.x());
   start_y.push_back(s.start_tangent.y());
   end_x.push_back(s.end_tangent.x());
@@ -369,17 +434,37 @@ void SegmentColumns::append(const LineSegment& s) {
   next.push_back(static_cast<std::int32_t>(s.next));
 }
 
-bool SegmentColumns::same(std::size_t i, const SegmentColumns& o, std::size_t k) const {
-  const auto equal = [&](auto SegmentColumns::*column) {
-    return std::memcmp(&(this->*column)[i], &(o.*column)[k], sizeof((o.*column)[k])) == 0;
+namespace {
+
+constexpr std::tuple float_columns{
+    &SegmentColumns::ax,         &SegmentColumns::ay,         &SegmentColumns::dx,
+    &SegmentColumns::dy,         &SegmentColumns::length,     &SegmentColumns::share,
+    &SegmentColumns::start_x,    &SegmentColumns::start_y,    &SegmentColumns::end_x,
+    &SegmentColumns::end_y,      &SegmentColumns::start_bend, &SegmentColumns::end_bend,
+    &SegmentColumns::half_width, &SegmentColumns::fade,       &SegmentColumns::half_width_rate,
+    &SegmentColumns::fade_rate};
+constexpr std::tuple index_columns{&SegmentColumns::start_cap, &SegmentColumns::end_cap,
+                                   &SegmentColumns::even, &SegmentColumns::previous,
+                                   &SegmentColumns::next};
+
+}  // namespace
+
+void SegmentColumns::pad() {
+  const auto room = [this](auto... column) {
+    (..., (this->*column).resize((this->*column).size() + most_lanes));
   };
-  using C = SegmentColumns;
-  return equal(&C::ax) && equal(&C::ay) && equal(&C::dx) && equal(&C::dy) && equal(&C::length) &&
-         equal(&C::start_x) && equal(&C::start_y) && equal(&C::end_x) && equal(&C::end_y) &&
-         equal(&C::start_bend) && equal(&C::end_bend) && equal(&C::half_width) &&
-         equal(&C::half_width_rate) && equal(&C::fade) && equal(&C::fade_rate) &&
-         equal(&C::start_cap) && equal(&C::end_cap) && equal(&C::even) && equal(&C::previous) &&
-         equal(&C::next);
+  std::apply(room, float_columns);
+  std::apply(room, index_columns);
+}
+
+bool SegmentColumns::same(std::size_t i, const SegmentColumns& others, std::size_t k) const {
+  const auto equal = [&](auto... column) {
+    const auto bits = [&](const auto& ours, const auto& theirs) {
+      return std::memcmp(&ours[i], &theirs[k], sizeof(ours[i])) == 0;
+    };
+    return (... && bits(this->*column, others.*column));
+  };
+  return std::apply(equal, float_columns) && std::apply(equal, index_columns);
 }
 
 void line_places(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
@@ -387,13 +472,27 @@ void line_places(const SegmentColumns& segments, const LineList& list, const Lin
   HWY_DYNAMIC_DISPATCH(LinePlacesOf)(segments, list, points, out);
 }
 
+namespace {
+
+void make_room(std::size_t count, SegmentOffsets& out) {
+  const std::size_t padded = count + most_lanes;
+  if (out.squared.size() >= padded) return;
+  for (std::vector<float>* column : {&out.x, &out.y, &out.squared}) column->resize(padded);
+}
+
+}  // namespace
+
 void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,
                      const Vec2f& point, SegmentOffsets& out) {
-  const std::size_t padded = list.size() + most_lanes;
-  if (out.squared.size() < padded) {
-    for (std::vector<float>* column : {&out.x, &out.y, &out.squared}) column->resize(padded);
-  }
+  make_room(list.size(), out);
   HWY_DYNAMIC_DISPATCH(SegmentOffsetsOf)(segments, list, point.x(), point.y(), out);
+}
+
+void nearest_segments(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                      const Circle& circle, float half_width, SegmentOffsets& offsets,
+                      std::vector<std::uint32_t>& kept) {
+  make_room(list.size(), offsets);
+  HWY_DYNAMIC_DISPATCH(NearestSegmentsOf)(segments, list, circle, half_width, offsets, kept);
 }
 
 }  // namespace normalshop

@@ -10,11 +10,6 @@ namespace normalshop {
 
 namespace {
 
-struct Circle {
-  Vec2f center;
-  float radius;
-};
-
 /// Around the pixels of a square, and half a pixel more.
 Circle circle_around(const Rect& square) {
   return {Vec2f(0.5F * static_cast<float>(square.x0 + square.x1 - 1),
@@ -161,35 +156,22 @@ PolylineField::List PolylineField::near(const Rect& square) const {
   return list;
 }
 
-/// Keeps, of each shape, what can be the nearest segment anywhere in the cell. The gradient of a
-/// distance d to a segment turns by at most 1 / d a pixel: seen from afar, the difference of two
-/// distances changes little within the cell.
+/// Keeps, of each shape, what can be the nearest segment anywhere in the cell.
 void PolylineField::prune(const List& segments, const Rect& cell, SegmentOffsets& offsets,
                           List& kept) const {
   kept.clear();
-  const auto [center, radius] = circle_around(cell);
-  segment_offsets(columns_, segments, center, offsets);
-  for (std::size_t i = 0; i < segments.size();) {
-    const std::uint32_t shape = segments_[segments[i]].shape;
+  const Circle circle = circle_around(cell);
+  const std::span<const std::uint32_t> all(segments);
+  for (std::size_t i = 0; i < all.size();) {
+    const std::uint32_t shape = segments_[all[i]].shape;
     std::size_t end = i + 1;
-    while (end < segments.size() && segments_[segments[end]].shape == shape) ++end;
-    const auto squared = offsets.squared.begin();
-    const auto closest =
-        static_cast<std::size_t>(std::min_element(squared + static_cast<std::ptrdiff_t>(i),
-                                                  squared + static_cast<std::ptrdiff_t>(end)) -
-                                 squared);
-    const float least = std::sqrt(offsets.squared[closest]);
-    const bool touched = least <= shapes_[shape].largest_half_width + radius;
-    const float turn = least > 2.0F * radius ? radius / (least - radius) : 2.0F;
-    const Vec2f away = offsets.at(closest) / std::max(least, 1e-6F);
-    const float farthest = least + 2.0F * radius + 0.01F;
-    for (; touched && i < end; ++i) {
-      const float other = offsets.squared[i];
-      if (other > farthest * farthest) continue;
-      const float distance = std::sqrt(other);
-      const float change = (offsets.at(i) / std::max(distance, 1e-6F) - away).norm() + turn;
-      if (distance <= least + std::min(change, 2.0F) * radius + 0.01F) kept.push_back(segments[i]);
+    if (segments_[all.back()].shape == shape) {
+      end = all.size();
+    } else {
+      while (segments_[all[end]].shape == shape) ++end;
     }
+    nearest_segments(columns_, all.subspan(i, end - i), circle, shapes_[shape].largest_half_width,
+                     offsets, kept);
     i = end;
   }
 }

@@ -55,40 +55,52 @@ struct Sample {
 
 class Sampler {
  public:
-  Sampler(const SegmentColumns& segments, const Profile& profile, float height,
-          FieldCoverage coverage, bool even)
-      : segments_(segments), profile_(profile), height_(height), coverage_(coverage), even_(even) {}
+  Sampler(const SegmentColumns& segments, const LineProfile& profile, bool even)
+      : segments_(segments),
+        profile_(profile.profile),
+        height_(profile.height),
+        coverage_(profile.coverage),
+        even_(even) {}
 
-  void Run(const LinePlaces& places, std::size_t i, FieldCell& out) const {
+  void Add(const LinePlaces& places, std::size_t i, FieldCell& field) const {
     const Index place = hn::Load(di, places.place.data() + i);
     const M beside = hn::RebindMask(d, hn::Eq(place, hn::Set(di, line_beside)));
     const M cap = hn::RebindMask(d, hn::Eq(place, hn::Set(di, line_cap)));
-    const V zero = hn::Zero(d);
-    Sample s{zero, zero, zero, zero};
-    V coverage = zero;
-    if (!hn::AllFalse(d, hn::Or(beside, cap))) {
-      const Lanes lanes(segments_, places, i);
-      if (!hn::AllFalse(d, beside)) s = Beside(lanes, places, i);
-      if (!hn::AllFalse(d, cap)) {
-        const Sample round = Cap(lanes);
-        s = {hn::IfThenElse(cap, round.height, s.height), hn::IfThenElse(cap, round.x, s.x),
-             hn::IfThenElse(cap, round.y, s.y), hn::IfThenElse(cap, round.u, s.u)};
-      }
-      coverage = Coverage(s.u, lanes.fade);
-    }
     const M any = hn::Or(beside, cap);
-    hn::Store(hn::IfThenElseZero(any, s.height), d, out.height.data() + i);
-    hn::Store(hn::IfThenElseZero(any, s.x), d, out.slope_x.data() + i);
-    hn::Store(hn::IfThenElseZero(any, hn::Neg(s.y)), d, out.slope_y.data() + i);
-    hn::Store(hn::IfThenElseZero(any, coverage), d, out.coverage.data() + i);
+    if (hn::AllFalse(d, any)) return;
+    const Lanes lanes(segments_, places, i);
+    Sample s;
+    if (!hn::AllFalse(d, beside)) s = Beside(lanes, places, i);
+    if (!hn::AllFalse(d, cap)) {
+      const Sample round = Cap(lanes);
+      if (hn::AllFalse(d, beside)) s = round;
+      s = {hn::IfThenElse(cap, round.height, s.height), hn::IfThenElse(cap, round.x, s.x),
+           hn::IfThenElse(cap, round.y, s.y), hn::IfThenElse(cap, round.u, s.u)};
+    }
+    const V height = hn::Load(d, field.height.data() + i);
+    const M higher = hn::And(any, hn::Gt(hn::Abs(s.height), hn::Abs(height)));
+    const auto put = [&](V value, CellLanes<float>& lane) {
+      float* at = lane.data() + i;
+      hn::Store(hn::IfThenElse(higher, value, hn::Load(d, at)), d, at);
+    };
+    put(s.height, field.height);
+    put(s.x, field.slope_x);
+    put(hn::Neg(s.y), field.slope_y);
+    if (coverage_ == FieldCoverage::None) return;
+    float* covered = field.coverage.data() + i;
+    const V coverage = hn::IfThenElseZero(any, Coverage(s.u, lanes.fade));
+    hn::Store(hn::Max(hn::Load(d, covered), coverage), d, covered);
   }
 
  private:
   Values Across(V u, V half_width) const {
-    const V radius =
-        hn::Min(hn::Div(hn::Set(d, jump_radius), half_width), hn::Set(d, largest_jump_share));
+    if (profile_.shape() == ProfileShape::Crease) {
+      const V radius =
+          hn::Min(hn::Div(hn::Set(d, jump_radius), half_width), hn::Set(d, largest_jump_share));
+      return crease_at(d, u, radius);
+    }
     if (profile_.shape() != ProfileShape::Custom) {
-      return shape_at(d, profile_.shape(), profile_.level(), u, radius);
+      return shape_at(d, profile_.shape(), profile_.level(), u);
     }
     alignas(64) std::array<float, most_lanes> at;
     alignas(64) std::array<float, most_lanes> slope;
@@ -174,10 +186,12 @@ class Sampler {
   bool even_;
 };
 
-void LineSamplesOf(const SegmentColumns& segments, const Profile& profile, float height,
-                   FieldCoverage coverage, bool even, const LinePlaces& places, FieldCell& out) {
-  const Sampler sampler(segments, profile, height, coverage, even);
-  for (std::size_t i = 0; i < out.height.size(); i += hn::Lanes(d)) sampler.Run(places, i, out);
+void AddLineOf(const SegmentColumns& segments, const LineProfile& profile, bool even,
+               const LinePlaces& places, FieldCell& field) {
+  const Sampler sampler(segments, profile, even);
+  for (std::size_t i = 0; i < field.height.size(); i += hn::Lanes(d)) {
+    sampler.Add(places, i, field);
+  }
 }
 
 }  // namespace normalshop::HWY_NAMESPACE
@@ -186,11 +200,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace normalshop {
 
-HWY_EXPORT(LineSamplesOf);
+HWY_EXPORT(AddLineOf);
 
-void line_samples(const SegmentColumns& segments, const Profile& profile, float height,
-                  FieldCoverage coverage, bool even, const LinePlaces& places, FieldCell& out) {
-  HWY_DYNAMIC_DISPATCH(LineSamplesOf)(segments, profile, height, coverage, even, places, out);
+void add_line(const SegmentColumns& segments, const LineProfile& profile, bool even,
+              const LinePlaces& places, FieldCell& field) {
+  HWY_DYNAMIC_DISPATCH(AddLineOf)(segments, profile, even, places, field);
 }
 
 }  // namespace normalshop

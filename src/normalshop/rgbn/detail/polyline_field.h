@@ -138,11 +138,10 @@ class PolylineField {
   bool narrow(const Level& from, const Rect& square, Task& task, Level& to) const;
   void look_at(Cell& cell) const;
   void pixels(int x, int y, const Cell& cell, int grid, FieldCell& out) const;
-  void sample(const LinePoints& points, const Cell& cell, FieldCell& best) const;
+  void sample(const LinePoints& points, const Cell& cell, FieldCell& field) const;
   FieldSample level(const Vec2f& p, const Shape& shape) const;
-  void levels(const LinePoints& points, const Shape& shape, FieldCell& out) const;
-  void beside(const LinePoints& points, const Shape& shape, const LineList& list,
-              FieldCell& out) const;
+  void add_beside(const LinePoints& points, const Shape& shape, const LineList& list,
+                  FieldCell& field) const;
   void turn_in(const LinePoints& points, const Shape& shape, LinePlaces& places) const;
   FieldSample patterned(const Shape& shape, const LinePlaces& places, std::size_t k) const;
   bool inside(const Vec2f& p, const Shape& shape) const;

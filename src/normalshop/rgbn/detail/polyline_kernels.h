@@ -65,19 +65,26 @@ struct FieldCell {
   CellLanes<float> coverage;
 };
 
-/// Over a band beside the line, or over all that it encloses.
-enum class FieldCoverage { Band, Inside };
+/// Over a band beside the line, or over all that it encloses; 0 where nobody asks for it.
+enum class FieldCoverage { None, Band, Inside };
 
 /// Slope jumps of profiles are spread over this many pixels on each side, but not over more of the
 /// profile than this share.
 inline constexpr float jump_radius = 1.5F;
 inline constexpr float largest_jump_share = 0.25F;
 
-/// The field with a profile across the line, at places beside it and at its round ends, where the
-/// odd part of the profile turns over smoothly from one side to the other, h = even(d) + sin(angle)
-/// odd(d). Elsewhere 0. `even`: all segments are, as in LineList.
-void line_samples(const SegmentColumns& segments, const Profile& profile, float height,
-                  FieldCoverage coverage, bool even, const LinePlaces& places, FieldCell& out);
+/// A field with a profile across lines.
+struct LineProfile {
+  const Profile& profile;
+  float height;
+  FieldCoverage coverage;
+};
+
+/// Adds the field at places beside a line and at its round ends, where the odd part of the profile
+/// turns over smoothly from one side to the other, h = even(d) + sin(angle) odd(d): where its
+/// |height| is larger it counts, and the larger coverage. `even`: all segments are, as in LineList.
+void add_line(const SegmentColumns& segments, const LineProfile& profile, bool even,
+              const LinePlaces& places, FieldCell& field);
 
 /// From the nearest places on a list's segments to a point.
 struct SegmentOffsets {
@@ -88,5 +95,18 @@ struct SegmentOffsets {
 
 void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,
                      const Vec2f& point, SegmentOffsets& out);
+
+struct Circle {
+  Vec2f center;
+  float radius;
+};
+
+/// Appends those of a list, all of one shape, that can be the nearest anywhere in the circle,
+/// unless all are further away than a half width. The gradient of a distance d to a segment turns
+/// by at most 1 / d a pixel: seen from afar, the difference of two distances changes little within
+/// the circle.
+void nearest_segments(const SegmentColumns& segments, std::span<const std::uint32_t> list,
+                      const Circle& circle, float half_width, SegmentOffsets& offsets,
+                      std::vector<std::uint32_t>& kept);
 
 }  // namespace normalshop

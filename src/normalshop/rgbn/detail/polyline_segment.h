@@ -34,6 +34,7 @@ struct LineSegment {
 /// What kernels take from segments, by columns.
 struct SegmentColumns {
   std::vector<float> ax, ay, dx, dy, length;
+  std::vector<float> share;                           ///< that a pixel has of the length
   std::vector<float> start_x, start_y, end_x, end_y;  ///< tangents
   std::vector<float> start_bend, end_bend;
   std::vector<float> half_width, half_width_rate;
@@ -42,6 +43,8 @@ struct SegmentColumns {
   std::vector<std::int32_t> previous, next;
 
   void append(const LineSegment& segment);
+  /// After the last one: room for kernels to read beyond it.
+  void pad();
   /// Is segment i, bit for bit, what segment k of the others is?
   bool same(std::size_t i, const SegmentColumns& others, std::size_t k) const;
 };

@@ -85,15 +85,14 @@ HWY_INLINE ProfileValues<V> shape_at(D d, ProfileShape shape, float level, V u) 
   return v;
 }
 
-/// Profile::at(u, radius) of many u. Not of Custom.
+/// A crease whose jump is spread: Profile::at(u, radius) of many u.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE ProfileValues<V> shape_at(D d, ProfileShape shape, float level, V u, V radius) {
-  ProfileValues<V> v = shape_at(d, shape, level, u);
-  if (shape != ProfileShape::Crease) return v;
+HWY_INLINE ProfileValues<V> crease_at(D d, V u, V radius) {
+  const auto at = [&](V x) { return shape_at(d, ProfileShape::Crease, 0.0F, x); };
+  ProfileValues<V> v = at(u);
   const auto near = hn::Lt(hn::Abs(u), radius);
   if (hn::AllFalse(d, near)) return v;
-  const V rise = hn::Sub(shape_at(d, shape, level, hn::Add(u, radius)).height,
-                         shape_at(d, shape, level, hn::Sub(u, radius)).height);
+  const V rise = hn::Sub(at(hn::Add(u, radius)).height, at(hn::Sub(u, radius)).height);
   v.slope = hn::IfThenElse(near, hn::Div(rise, hn::Mul(hn::Set(d, 2.0F), radius)), v.slope);
   return v;
 }
