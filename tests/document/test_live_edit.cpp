@@ -107,6 +107,20 @@ TEST(LiveEdit, LongStrokesAcrossSeamsAreThoseOfApply) {
   }
 }
 
+TEST(LiveEdit, StrengthAndSprayAreThoseOfApply) {
+  const std::string strokes = many_points();
+  for (const char* fields : {R"("strength": 0.4)", R"("spray": {"full": 20, "zero": 60})",
+                             R"("strength": 0.7, "details": "ignore")"}) {
+    SCOPED_TRACE(fields);
+    const Edit whole =
+        edit(R"("operator": "pen", "options": {"width": 0.2, "height": 0.03}, "window": "view",
+                "view": {"direction": [1, 0.3, 0.2], "center": [0, 0, 0], "width": 2, "height": 2},
+                )" +
+             std::string(fields) + ", " + strokes);
+    expect_drawn_as_applied(whole, document(uv_sphere(24, 12), noise_map(128, CodeType::U16)));
+  }
+}
+
 // Many points to a piece of the curve that the pen follows.
 TEST(LiveEdit, DensePointsAreThoseOfApply) {
   std::string points;

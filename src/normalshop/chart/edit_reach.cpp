@@ -34,6 +34,19 @@ void EditReach::dilate(const Rect& blocks) {
   }
 }
 
+EditReach::Marks EditReach::marks(float left, float top, float right, float bottom) const {
+  const auto block = [](float pixel) { return static_cast<int>(pixel) / edit_block; };
+  int count = 0;
+  int marked = 0;
+  for (int y = block(top); y <= block(bottom); ++y) {
+    for (int x = block(left); x <= block(right); ++x) {
+      ++count;
+      marked += blocks_(x, y) != 0 ? 1 : 0;
+    }
+  }
+  return marked == 0 ? Marks::None : marked == count ? Marks::All : Marks::Some;
+}
+
 bool EditReach::reaches(float x0, float y0, float x1, float y1) const {
   // Whatever a stray vertex gives stays within what int holds.
   const auto bounded = [](float v) { return v > -1.0F ? std::min(v, 1e6F) : -1.0F; };

@@ -44,6 +44,9 @@ class EditReach {
     // Towards zero: what lies half a pixel outside belongs to the first block.
     return blocks_(static_cast<int>(x) / edit_block, static_cast<int>(y) / edit_block) != 0;
   }
+  /// The same of all points within such a box.
+  enum class Marks { None, Some, All };
+  Marks marks(float left, float top, float right, float bottom) const;
   /// Can any point within this box of chart pixels be changed?
   bool reaches(float x0, float y0, float x1, float y1) const;
 

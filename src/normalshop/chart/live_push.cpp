@@ -38,14 +38,12 @@ const std::vector<MapTile>& LivePush::update(const Rect& changed, StorageAtlas& 
 }
 
 const std::vector<MapTile>& LivePush::update(const PixelBlocks& changed, StorageAtlas& storage) {
-  constexpr int read_beyond = 3;  // pixels, by a bicubic kernel
   tiles_.clear();
   state_->sampler.update(changed);
   if (changed.region().empty()) return tiles_;
-  const Rect near = intersect(grow(changed.region(), read_beyond), state_->edit.region);
   for (std::size_t i = 0; i < state_->sets.size(); ++i) {
     const int columns = NormalMap::tiles_along(storage.sets[i].normals.width());
-    for (const int tile : state_->sets[i]->update(near, changed, storage.sets[i].normals)) {
+    for (const int tile : state_->sets[i]->update(changed, storage.sets[i].normals)) {
       tiles_.push_back({static_cast<std::uint32_t>(i), tile % columns, tile / columns});
     }
   }

@@ -20,7 +20,7 @@ struct MapTile {
 /// Pushes an edit again and again while it grows, a stroke under the pointer: what push() would
 /// store of the whole edit, bit for bit, at the price of what has changed: the texels that the
 /// changed pixels show. Which tiles hold these is found once for a chart, and where a tile's texels
-/// lie in it when they are first asked for: some 50 bytes are kept for each of these texels.
+/// lie in it when they are first asked for: some 60 bytes are kept for each of these texels.
 ///
 /// Source: thesis 5.5 (selective update), with tiles of the atlas in place of pixels.
 class LivePush {

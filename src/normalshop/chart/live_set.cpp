@@ -11,16 +11,6 @@ namespace {
 
 constexpr auto all_triangles = [](std::uint32_t) { return true; };
 
-/// Do any of these blocks hold what these texels read?
-bool meets(const PixelBlocks& blocks, const SeenTexels& seen) {
-  constexpr int beyond = 3;  // pixels, of a bicubic kernel
-  const auto block = [](float pixel) {
-    return static_cast<int>(std::max(pixel, 0.0F)) / PixelBlocks::side;
-  };
-  return blocks.any({block(seen.left - beyond), block(seen.top - beyond),
-                     block(seen.right + beyond) + 1, block(seen.bottom + beyond) + 1});
-}
-
 }  // namespace
 
 LiveSet::LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index,
@@ -32,13 +22,13 @@ LiveSet::LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index,
       tiles_(static_cast<std::size_t>(NormalMap::tiles_along(before_.width())) *
              static_cast<std::size_t>(NormalMap::tiles_along(before_.height()))) {}
 
-std::vector<int> LiveSet::update(const Rect& pixels, const PixelBlocks& changed, NormalMap& map) {
-  std::vector<int> tiles = places_.meeting(pixels);
+std::vector<int> LiveSet::update(const PixelBlocks& changed, NormalMap& map) {
+  std::vector<int> tiles = places_.meeting(changed);
   if (tiles.empty()) return tiles;
   find_seen(tiles);
   const std::vector<SharedTexel> shared = places_.shared_of(tiles);
   const std::vector<TexelWrite> shared_writes = editor_.shared_writes(shared, all_triangles);
-  const std::vector<GutterTexel> gutter = places_.gutter_of(tiles, pixels);
+  const std::vector<GutterTexel> gutter = places_.gutter_of(tiles, changed);
   const std::vector<TexelWrite> gutter_writes = editor_.gutter_writes(gutter, all_triangles);
   for (const int t : tiles) tiles_[static_cast<std::size_t>(t)].touched = false;
   restore(shared, map);
@@ -62,10 +52,12 @@ void LiveSet::find_seen(const std::vector<int>& tiles) {
   }
   parallel_for(unknown.size(), 1, [&](std::size_t begin, std::size_t end) {
     TexelRows rows(editor_.mesh(), editor_.sampler().grid(), editor_.texels(), all_triangles);
+    SeenTile gathered(everywhere_, before_);
     for (std::size_t i = begin; i < end; ++i) {
       Tile& tile = tiles_[static_cast<std::size_t>(unknown[i])];
       const Rect texels = tile_texels(unknown[i], before_.width(), before_.height());
-      rows.visit(texels, [&](TexelLanes& lanes) { append_seen(everywhere_, lanes, tile.seen); });
+      rows.visit(texels, [&](TexelLanes& lanes) { gathered.add(lanes, tile.seen); });
+      gathered.finish(tile.seen);
       tile.found = true;
     }
   });
@@ -77,19 +69,28 @@ void LiveSet::edit_tile(int index, const PixelBlocks& blocks, const std::vector<
   Tile& tile = tiles_[static_cast<std::size_t>(index)];
   // What shared texels become may depend on pixels far away.
   const bool whole = places_.shares(index);
+  NormalMap::TileWriter writer(map, static_cast<std::size_t>(index), before_);
+  const auto is_shared = [&](std::size_t place) {
+    if (!whole) return false;
+    const auto in_tile = static_cast<int>(place);
+    const Rect texels = tile_texels(index, before_.width(), before_.height());
+    return holds_texel(shared, texel_index(texels.x0 + in_tile % side, texels.y0 + in_tile / side,
+                                           before_.width()));
+  };
   for (const SeenTexels& seen : tile.seen) {
-    if (!whole && !meets(blocks, seen)) continue;
+    if (!whole && !blocks.any_near(seen.left, seen.top, seen.right, seen.bottom, bicubic_reach))
+      continue;
     tile.visited += static_cast<std::size_t>(seen.count);
     const bool acts = seen.load(editor_.sampler().reach(), lanes) && editor_.edit_weighed(lanes);
     for (int i = 0; i < seen.count; ++i) {
-      const std::uint32_t texel = seen.texels[static_cast<std::size_t>(i)];
-      if (acts && lanes.batch.acts(i)) {
-        const std::uint32_t owner = seen.triangles[static_cast<std::size_t>(i)];
-        if (!holds_texel(shared, texel)) {
-          put(tile, editor_.write_of(lanes.batch, i, texel, owner), map);
-        }
-      } else {
-        restore(tile, texel, map);
+      const std::size_t place = seen.places[static_cast<std::size_t>(i)];
+      if (!acts || !lanes.batch.acts(i)) {
+        tile.changed.reset(place);
+        if (writer.restore(place)) tile.touched = true;
+      } else if (!is_shared(place)) {
+        writer.set_normal(place, lanes.batch.result.get(i));
+        tile.changed.set(place);
+        tile.touched = true;
       }
     }
   }

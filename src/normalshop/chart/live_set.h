@@ -2,6 +2,7 @@
 
 #include <bitset>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "normalshop/chart/normal_editor.h"
@@ -21,9 +22,9 @@ class LiveSet {
   LiveSet(const Mesh& mesh, const StorageSet& set, std::uint32_t index, const EditSampler& sampler,
           const EditReach& everywhere);
 
-  /// Stores what the edit makes of all texels in these pixels, given which blocks have changed
-  /// there. Returns the tiles that may look different.
-  std::vector<int> update(const Rect& pixels, const PixelBlocks& changed, NormalMap& map);
+  /// Stores what the edit makes of the texels in or beside changed blocks. Returns the tiles that
+  /// may look different.
+  std::vector<int> update(const PixelBlocks& changed, NormalMap& map);
   /// Of all updates: what they came to, and how `map` differs from before.
   PushTally tally(const NormalMap& map) const;
   const NormalMap& before() const { return before_; }
@@ -32,8 +33,8 @@ class LiveSet {
   static constexpr int side = NormalMap::tile_size;
   struct Tile {
     bool found = false;
-    std::vector<SeenTexels> seen;  ///< by their owners; once found
-    bool touched = false;          ///< by the last update
+    std::deque<SeenTexels> seen;  ///< by their owners; once found
+    bool touched = false;         ///< by the last update
     std::size_t visited = 0;
     std::bitset<side * side> changed;  ///< texels
   };

@@ -10,15 +10,22 @@
 namespace normalshop {
 
 bool NormalEditor::edit(TexelLanes& lanes) const {
-  return read_visible_weight(sampler_.reach(), lanes.batch) && edit_weighed(lanes);
+  if (!read_visible_weight(sampler_.reach(), lanes.batch)) return false;
+  if (!sampler_.read_weighed(lanes.batch)) return false;
+  read_stored(before_, lanes);
+  apply_to(lanes);
+  return true;
 }
 
 bool NormalEditor::edit_weighed(TexelLanes& lanes) const {
   if (!sampler_.read_weighed(lanes.batch)) return false;
-  fill_frames(mesh_, sampler_.grid().view, space_, lanes.triangles, lanes.batch);
-  read_stored(before_, lanes);
-  apply(sampler_.direction(), lanes.batch);
+  apply_to(lanes);
   return true;
+}
+
+void NormalEditor::apply_to(TexelLanes& lanes) const {
+  fill_frames(mesh_, sampler_.grid().view, space_, lanes.triangles, lanes.batch);
+  apply(sampler_.direction(), lanes.batch);
 }
 
 namespace {

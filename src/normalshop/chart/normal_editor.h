@@ -30,7 +30,7 @@ class NormalEditor {
 
   /// Fills result and turn of the lanes on which the edit acts; false where it acts on none.
   bool edit(TexelLanes& lanes) const;
-  /// The same of lanes whose weight is there already.
+  /// The same of lanes whose weight is there already, and what the map holds.
   bool edit_weighed(TexelLanes& lanes) const;
   /// The write of lane i, on which the edit acts, of a texel that the triangle's frame decodes.
   TexelWrite write_of(const TexelBatch& batch, int i, std::uint32_t texel,
@@ -57,6 +57,7 @@ class NormalEditor {
                                         const Wanted& wanted) const;
 
  private:
+  void apply_to(TexelLanes& lanes) const;
   Vec3f own_vector(int x, int y, const Vec3f& base, const Mat3f& frame) const;
   Vec3f gutter_vector(const GutterTexel& g, const Mat3f& frame, const Vec3f& own,
                       const PushTriangle& source, float strength) const;

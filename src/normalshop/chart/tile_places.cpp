@@ -27,6 +27,9 @@ void raise(int& place, int value) {
   }
 }
 
+/// A place of what faces away.
+constexpr float far_away = -1e9F;
+
 /// Whatever a stray vertex gives stays within what int holds.
 int pixel(float v) { return static_cast<int>(v > -1e6F ? std::min(v, 1e6F) : -1e6F); }
 
@@ -59,7 +62,7 @@ TilePlaces::TilePlaces(const Mesh& mesh, const TexelMap& texels, std::uint32_t t
   gutter_points_.resize(texels.gutter().size());
   parallel_for(texels.gutter().size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const GutterTexel& g = texels_.gutter()[i];
+      const GutterTexel& g = texels_.gutter()[gutter_.order[i]];
       gutter_points_[i] = add_point(tile_of(g.texel), gutter_source(g));
     }
   });
@@ -130,7 +133,7 @@ void TilePlaces::add_triangle(std::uint32_t triangle) {
 }
 
 Vec2f TilePlaces::add_point(int tile, const SurfacePoint& point) {
-  if (faces_away(mesh_, point.triangle, grid_.view.direction)) return Vec2f::Constant(-1e9F);
+  if (faces_away(mesh_, point.triangle, grid_.view.direction)) return Vec2f::Constant(far_away);
   const std::size_t corner = 3 * static_cast<std::size_t>(point.triangle);
   const Vec3f position = interpolate(mesh_.position(corner), mesh_.position(corner + 1),
                                      mesh_.position(corner + 2), point.b1, point.b2);
@@ -148,12 +151,17 @@ void TilePlaces::grow(int tile, const Vec2f& low, const Vec2f& high) {
   raise(box.y1, pixel(std::floor(high.y())) + 1);
 }
 
-std::vector<int> TilePlaces::meeting(const Rect& pixels) const {
+std::vector<int> TilePlaces::meeting(const PixelBlocks& blocks) const {
+  const Rect pixels = normalshop::grow(blocks.region(), static_cast<int>(bicubic_reach));
   std::vector<int> out;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const Box& b = boxes_[i];
     const bool meets = b.x0 < pixels.x1 && b.x1 > pixels.x0 && b.y0 < pixels.y1 && b.y1 > pixels.y0;
-    if (meets) out.push_back(static_cast<int>(i));
+    if (meets &&
+        blocks.any_near(static_cast<float>(b.x0), static_cast<float>(b.y0),
+                        static_cast<float>(b.x1), static_cast<float>(b.y1), bicubic_reach)) {
+      out.push_back(static_cast<int>(i));
+    }
   }
   return out;
 }
@@ -169,23 +177,33 @@ std::vector<SharedTexel> TilePlaces::shared_of(const std::vector<int>& tiles) co
 }
 
 std::vector<GutterTexel> TilePlaces::gutter_of(const std::vector<int>& tiles,
-                                               const Rect& pixels) const {
-  const auto low = Vec2f(static_cast<float>(pixels.x0), static_cast<float>(pixels.y0));
-  const auto high = Vec2f(static_cast<float>(pixels.x1), static_cast<float>(pixels.y1));
+                                               const PixelBlocks& blocks) const {
+  const Rect& pixels = blocks.region();
+  const auto corner = [](int x, int y, float beyond) -> Vec2f {
+    return {static_cast<float>(x) + beyond, static_cast<float>(y) + beyond};
+  };
+  // Whole blocks are marked.
+  constexpr float beyond = bicubic_reach + PixelBlocks::side;
+  const Vec2f low = corner(pixels.x0, pixels.y0, -beyond);
+  const Vec2f high = corner(pixels.x1, pixels.y1, beyond);
   std::vector<std::uint32_t> entries;
   for (const int t : tiles) {
     const auto tile = static_cast<std::size_t>(t);
     const std::uint32_t last = gutter_.first[tile + 1];
-    for (std::uint32_t i = gutter_.first[tile]; i < last;) {
-      const std::uint32_t begin = i;
-      const std::uint32_t texel = texels_.gutter()[gutter_.order[begin]].texel;
-      bool inside = false;
-      for (; i < last && texels_.gutter()[gutter_.order[i]].texel == texel; ++i) {
-        const Vec2f& p = gutter_points_[gutter_.order[i]];
-        inside = inside || ((p.array() >= low.array()).all() && (p.array() < high.array()).all());
-      }
+    for (std::uint32_t i = gutter_.first[tile]; i < last; ++i) {
+      const Vec2f& p = gutter_points_[i];
+      const bool inside = p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() &&
+                          p.y() <= high.y() &&
+                          blocks.any_near(p.x(), p.y(), p.x(), p.y(), bicubic_reach);
       if (!inside) continue;
-      entries.insert(entries.end(), gutter_.order.begin() + begin, gutter_.order.begin() + i);
+      const std::uint32_t texel = texels_.gutter()[gutter_.order[i]].texel;
+      const auto same = [&](std::uint32_t k) {
+        return texels_.gutter()[gutter_.order[k]].texel == texel;
+      };
+      std::uint32_t begin = i;
+      while (begin > gutter_.first[tile] && same(begin - 1)) --begin;
+      while (i + 1 < last && same(i + 1)) ++i;
+      entries.insert(entries.end(), gutter_.order.begin() + begin, gutter_.order.begin() + i + 1);
     }
   }
   return sorted(texels_.gutter(), std::move(entries));

@@ -5,10 +5,14 @@
 
 #include "normalshop/chart/grid.h"
 #include "normalshop/core/normal_map.h"
+#include "normalshop/core/pixel_blocks.h"
 #include "normalshop/surface/texel_map.h"
 
 /// Where the tiles of an atlas lie in a chart, private to floor 4.
 namespace normalshop {
+
+/// Pixels beyond a point from which a bicubic kernel may read.
+inline constexpr float bicubic_reach = 3.0F;
 
 /// Boxes of chart pixels around what faces the viewer of each tile of one texture set: of the
 /// texels themselves, and of the surface points that its gutter and shared texels stand for.
@@ -17,16 +21,18 @@ class TilePlaces {
   TilePlaces(const Mesh& mesh, const TexelMap& texels, std::uint32_t texture_set,
              const ChartGrid& grid);
 
-  /// Tiles with anything in these pixels, rising.
-  std::vector<int> meeting(const Rect& pixels) const;
+  /// Tiles with anything in marked blocks or so near that a bicubic kernel reads there, rising.
+  std::vector<int> meeting(const PixelBlocks& blocks) const;
   /// All shared texels of some tiles, by texel.
   std::vector<SharedTexel> shared_of(const std::vector<int>& tiles) const;
   bool shares(int tile) const {
     const auto t = static_cast<std::size_t>(tile);
     return shared_.first[t] != shared_.first[t + 1];
   }
-  /// All entries of the gutter texels of some tiles of which at least one lies in these pixels.
-  std::vector<GutterTexel> gutter_of(const std::vector<int>& tiles, const Rect& pixels) const;
+  /// All entries of the gutter texels of some tiles of which at least one lies so near to marked
+  /// blocks.
+  std::vector<GutterTexel> gutter_of(const std::vector<int>& tiles,
+                                     const PixelBlocks& blocks) const;
 
  private:
   struct Box {
@@ -56,7 +62,7 @@ class TilePlaces {
   int columns_;
   std::vector<Box> boxes_;
   ByTile gutter_;
-  std::vector<Vec2f> gutter_points_;  // by entry: pixels, far away where they face away
+  std::vector<Vec2f> gutter_points_;  // of gutter_.order: pixels, far away where they face away
   ByTile shared_;
 };
 

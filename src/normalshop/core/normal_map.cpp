@@ -54,7 +54,7 @@ std::shared_ptr<NormalMap::Tile> NormalMap::own_tile(const Tile* shared) {
 }
 
 const NormalMap::Tile* NormalMap::tile_of(int x, int y) const {
-  return tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)].get();
+  return tiles_[tile_index(x, y)].get();
 }
 
 Vec3f NormalMap::vector(int x, int y) const {
@@ -158,16 +158,12 @@ void NormalMap::sample(const float* u, const float* v, int count, float* x, floa
 }
 
 bool NormalMap::restore(int x, int y, const NormalMap& earlier) {
-  auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
-  const Tile* was = earlier.tile_of(x, y);
-  const std::size_t i = index_in_tile(x, y);
-  const bool was_edited = was != nullptr && was->edited[i];
-  assert(t || was == nullptr);
-  if (t.get() == was || (!t->edited[i] && !was_edited)) return false;
-  if (t.use_count() != 1) t = own_tile(t.get());
-  t->edited[i] = was_edited;
-  if (was_edited) t->normals[i] = was->normals[i];
-  return true;
+  return TileWriter(*this, tile_index(x, y), earlier).restore(index_in_tile(x, y));
+}
+
+void NormalMap::TileWriter::own() {
+  if (tile_.use_count() != 1) tile_ = own_tile(tile_.get());
+  own_ = tile_.get();
 }
 
 bool NormalMap::edited(int x, int y) const {

@@ -94,7 +94,7 @@ class NormalMap {
   std::size_t edited_count() const;
   /// Different tiles may be written by different threads at once. n is unit.
   void set_normal(int x, int y, const Vec3f& n) {
-    auto& t = tiles_[static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size)];
+    auto& t = tiles_[tile_index(x, y)];
     if (t.use_count() != 1) t = own_tile(t.get());
     t->normals[index_in_tile(x, y)] = convention_.scale == 1.0F ? n : with_coded_length(n);
     t->edited[index_in_tile(x, y)] = true;
@@ -109,6 +109,35 @@ class NormalMap {
   /// Makes the texel what it was in an earlier copy of this map. False where it cannot be anything
   /// else. Threads as in set_normal().
   bool restore(int x, int y, const NormalMap& earlier);
+
+  /// set_normal() and restore() of one tile's texels, by index_in_tile(), without looking for the
+  /// tile again and again. Meanwhile nobody else edits or copies the map.
+  class TileWriter {
+   public:
+    TileWriter(NormalMap& map, std::size_t tile, const NormalMap& earlier)
+        : map_(map), tile_(map.tiles_[tile]), was_(earlier.tiles_[tile].get()) {}
+    void set_normal(std::size_t i, const Vec3f& n) {
+      if (own_ == nullptr) own();
+      own_->normals[i] = map_.convention_.scale == 1.0F ? n : map_.with_coded_length(n);
+      own_->edited[i] = true;
+    }
+    bool restore(std::size_t i) {
+      const bool was_edited = was_ != nullptr && was_->edited[i];
+      if (tile_.get() == was_ || (!tile_->edited[i] && !was_edited)) return false;
+      if (own_ == nullptr) own();
+      own_->edited[i] = was_edited;
+      if (was_edited) own_->normals[i] = was_->normals[i];
+      return true;
+    }
+
+   private:
+    void own();
+
+    NormalMap& map_;
+    std::shared_ptr<Tile>& tile_;
+    const Tile* was_;
+    Tile* own_ = nullptr;
+  };
 
   /// Codes of the edited map. With the map's own type and convention every unedited texel keeps its
   /// code, and channels beyond the normal's (alpha) keep theirs always. The space is not converted.
@@ -126,6 +155,9 @@ class NormalMap {
   void encode_edits(int y, RawImage& out, int out_y) const;
   template <class Code>
   Vec3f sample_codes(const WrappedTaps& tap) const;
+  std::size_t tile_index(int x, int y) const {
+    return static_cast<std::size_t>((y / tile_size) * tile_columns_ + x / tile_size);
+  }
   const Tile* tile_of(int x, int y) const;
   bool may_read_edits(const float* u, const float* v, int count) const;
 

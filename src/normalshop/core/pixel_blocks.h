@@ -44,17 +44,26 @@ class PixelBlocks {
   }
   /// Those that reset() told, within the image.
   const Rect& region() const { return region_; }
-  /// Is any marked within these blocks?
+  /// Is any marked that lies within so many pixels of a box?
+  bool any_near(float left, float top, float right, float bottom, float beyond) const {
+    const auto block = [](float pixel) {
+      return pixel > 0.0F ? static_cast<int>(std::min(pixel, 1e6F)) / side : 0;
+    };
+    return any({block(left - beyond), block(top - beyond), block(right + beyond) + 1,
+                block(bottom + beyond) + 1});
+  }
+
+ private:
   bool any(const Rect& blocks) const {
     const Rect near = intersect(blocks, blocks_);
     for (int y = near.y0; y < near.y1; ++y) {
       const std::uint8_t* row = marks_.row(y);
-      if (std::find(row + near.x0, row + near.x1, std::uint8_t{1}) != row + near.x1) return true;
+      for (int x = near.x0; x < near.x1; ++x) {
+        if (row[x] != 0) return true;
+      }
     }
     return false;
   }
-
- private:
   static int along(int pixels) { return (pixels + side - 1) / side; }
 
   Rect pixels_;
