@@ -1,5 +1,6 @@
 #include "document/edit_fixture.h"
 #include "document/operator_cases.h"
+#include "support/sanitized.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/document/tile_plan.h"
@@ -67,6 +68,7 @@ TEST(TiledEdit, OfAPenIsBitForBitThatOfOneChart) {
 
 // Where coordinates round: a twentieth of what codes of 8 bits tells apart.
 TEST(TiledEdit, OfEveryLocalOperatorIsThatOfOneChart) {
+  NORMALSHOP_SKIP_FIGURES();
   const Document plane = document(plane_grid(2), noise_map(256, CodeType::U16));
   int compared = 0;
   for (const double size : {1.6, 2.2}) {
@@ -87,6 +89,7 @@ TEST(TiledEdit, OfEveryLocalOperatorIsThatOfOneChart) {
 
 // Here positions round differently in every tile.
 TEST(TiledEdit, OnASphereReachesTheSameTexels) {
+  NORMALSHOP_SKIP_FIGURES();
   const Document sphere = document(uv_sphere(48, 24), noise_map(160, CodeType::U16));
   for (const std::string& fields :
        {std::string(R"("operator": "smooth", "options": {"sigma": 0.02})"),
