@@ -66,6 +66,7 @@ TilePlaces::TilePlaces(const Mesh& mesh, const TexelMap& texels, std::uint32_t t
       gutter_points_[i] = add_point(tile_of(g.texel), gutter_source(g));
     }
   });
+  box_gutter();
   parallel_for(texels.shared().size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const SharedTexel& s = texels_.shared()[i];
@@ -93,6 +94,19 @@ TilePlaces::ByTile TilePlaces::by_tile(const std::vector<Item>& items) const {
         static_cast<std::uint32_t>(i);
   }
   return out;
+}
+
+void TilePlaces::box_gutter() {
+  constexpr float most = std::numeric_limits<float>::max();
+  const PointBox none{Vec2f::Constant(most), Vec2f::Constant(-most)};
+  gutter_boxes_.assign((gutter_points_.size() + gutter_run - 1) / gutter_run, none);
+  for (std::size_t i = 0; i < gutter_points_.size(); ++i) {
+    const Vec2f& p = gutter_points_[i];
+    if (!(p.x() > far_away)) continue;
+    PointBox& box = gutter_boxes_[i / gutter_run];
+    box.low = box.low.cwiseMin(p);
+    box.high = box.high.cwiseMax(p);
+  }
 }
 
 void TilePlaces::add_triangles() {
@@ -178,31 +192,27 @@ std::vector<SharedTexel> TilePlaces::shared_of(const std::vector<int>& tiles) co
 
 std::vector<GutterTexel> TilePlaces::gutter_of(const std::vector<int>& tiles,
                                                const PixelBlocks& blocks) const {
-  const Rect& pixels = blocks.region();
-  const auto corner = [](int x, int y, float beyond) -> Vec2f {
-    return {static_cast<float>(x) + beyond, static_cast<float>(y) + beyond};
+  const auto near = [&](const Vec2f& low, const Vec2f& high) {
+    return low.x() <= high.x() &&
+           blocks.any_near(low.x(), low.y(), high.x(), high.y(), bicubic_reach);
   };
-  // Whole blocks are marked.
-  constexpr float beyond = bicubic_reach + PixelBlocks::side;
-  const Vec2f low = corner(pixels.x0, pixels.y0, -beyond);
-  const Vec2f high = corner(pixels.x1, pixels.y1, beyond);
   std::vector<std::uint32_t> entries;
   for (const int t : tiles) {
     const auto tile = static_cast<std::size_t>(t);
+    const std::uint32_t first = gutter_.first[tile];
     const std::uint32_t last = gutter_.first[tile + 1];
-    for (std::uint32_t i = gutter_.first[tile]; i < last; ++i) {
+    const auto texel_of = [&](std::uint32_t i) { return texels_.gutter()[gutter_.order[i]].texel; };
+    for (std::uint32_t i = first; i < last; ++i) {
+      const PointBox& box = gutter_boxes_[i / gutter_run];
+      if ((i == first || i % gutter_run == 0) && !near(box.low, box.high)) {
+        i |= static_cast<std::uint32_t>(gutter_run - 1);  // the last of the box
+        continue;
+      }
       const Vec2f& p = gutter_points_[i];
-      const bool inside = p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() &&
-                          p.y() <= high.y() &&
-                          blocks.any_near(p.x(), p.y(), p.x(), p.y(), bicubic_reach);
-      if (!inside) continue;
-      const std::uint32_t texel = texels_.gutter()[gutter_.order[i]].texel;
-      const auto same = [&](std::uint32_t k) {
-        return texels_.gutter()[gutter_.order[k]].texel == texel;
-      };
+      if (!(p.x() > far_away) || !near(p, p)) continue;
       std::uint32_t begin = i;
-      while (begin > gutter_.first[tile] && same(begin - 1)) --begin;
-      while (i + 1 < last && same(i + 1)) ++i;
+      while (begin > first && texel_of(begin - 1) == texel_of(i)) --begin;
+      while (i + 1 < last && texel_of(i + 1) == texel_of(i)) ++i;
       entries.insert(entries.end(), gutter_.order.begin() + begin, gutter_.order.begin() + i + 1);
     }
   }

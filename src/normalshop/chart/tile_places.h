@@ -54,6 +54,7 @@ class TilePlaces {
   void add_triangle(std::uint32_t triangle);
   Vec2f add_point(int tile, const SurfacePoint& point);
   void grow(int tile, const Vec2f& low, const Vec2f& high);
+  void box_gutter();
 
   const Mesh& mesh_;
   const TexelMap& texels_;
@@ -62,7 +63,13 @@ class TilePlaces {
   int columns_;
   std::vector<Box> boxes_;
   ByTile gutter_;
-  std::vector<Vec2f> gutter_points_;  // of gutter_.order: pixels, far away where they face away
+  static constexpr std::size_t gutter_run = 32;
+  struct PointBox {
+    Vec2f low;
+    Vec2f high;
+  };
+  std::vector<PointBox> gutter_boxes_;  // around so many points each, those far away aside
+  std::vector<Vec2f> gutter_points_;    // of gutter_.order: pixels, far away where they face away
   ByTile shared_;
 };
 

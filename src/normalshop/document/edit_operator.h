@@ -105,6 +105,8 @@ class EditOperator {
   virtual std::string_view asset_field() const { return {}; }
   /// Where it may change something, to within two pixels; empty: the whole view.
   virtual Extent extent(const std::vector<UnitStroke>& strokes) const = 0;
+  /// Whatever holds extent(), found quickly.
+  virtual Extent bounds(const std::vector<UnitStroke>& strokes) const { return extent(strokes); }
   /// Where a stroke goes on to others, does it make the same of what lies so many object units
   /// before that, outside of the extent() of the rest? Infinite where it may change anywhere.
   virtual float looks_back() const { return std::numeric_limits<float>::infinity(); }

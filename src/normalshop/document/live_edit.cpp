@@ -92,10 +92,14 @@ Rect LiveEdit::changed_region(const std::vector<UnitStroke>& before) const {
     parts = before;
     parts.insert(parts.end(), after.begin(), after.end());
   }
-  Extent extent = operation.extent(parts);
-  const EditPlace& place = state_->open.place;
-  if (extent.empty()) extent = place.view;
-  return changeable_pixels(state_->open.chart.grid, intersect(extent, place.view));
+  return region_of(operation.bounds(parts));
+}
+
+/// The pixels of an extent; an empty one is the whole view.
+Rect LiveEdit::region_of(const Extent& extent) const {
+  const Extent& view = state_->open.place.view;
+  return changeable_pixels(state_->open.chart.grid,
+                           extent.empty() ? view : intersect(extent, view));
 }
 
 /// Makes the result anew in the region of `drawn`, and marks where it may have become different.
@@ -166,7 +170,7 @@ EditReport LiveEdit::complete() {
   Stopwatch watch;
   EditReport report = open.report;
   const OperatorInput input = operator_input(state.edit, open);
-  const Rect region = changed_region({});
+  const Rect region = region_of(state.edit.operation->extent(state.edit.strokes));
   check_on_surface(state.edit, input.strokes, open.chart, region, open.place.model);
   const ColorResult colors = operate_on_colors(state.edit, open, input);
   if (state.edit.mode == EditMode::Base) {

@@ -46,6 +46,7 @@ class LiveEdit {
   const std::vector<MapTile>& push(const Rect& region, const std::vector<UnitStroke>* before);
   EditReport complete();
   Rect changed_region(const std::vector<UnitStroke>& before) const;
+  Rect region_of(const Extent& extent) const;
 
   struct State;
   std::unique_ptr<State> state_;  // null once it is over

@@ -70,6 +70,10 @@ void PolylineField::look_at(Cell& cell) const {
 /// Of the cell that begins at (x, y).
 void PolylineField::pixels(int x, int y, const Cell& cell, int grid, FieldCell& out) const {
   LinePoints points;
+  if (grid == 1) {
+    place(x, y, 0.0F, 0.0F, points);
+    return sample(points, cell, out);
+  }
   FieldCell samples;
   clear(out);
   for (int j = 0; j < grid; ++j) {
@@ -77,7 +81,6 @@ void PolylineField::pixels(int x, int y, const Cell& cell, int grid, FieldCell& 
       const float dx = (static_cast<float>(i) + 0.5F) / static_cast<float>(grid) - 0.5F;
       const float dy = (static_cast<float>(j) + 0.5F) / static_cast<float>(grid) - 0.5F;
       place(x, y, dx, dy, points);
-      if (grid == 1) return sample(points, cell, out);
       sample(points, cell, samples);
       add_to(out, samples);
     }
@@ -168,21 +171,6 @@ bool PolylineField::inside(const Vec2f& p, const Shape& shape) const {
     if (left) winding += b.y() > a.y() ? 1 : -1;
   }
   return winding != 0;
-}
-
-void write_cell(const Rect& pixels, int x, int y, const FieldCell& cell, SlopeSpan details,
-                MaskSpan coverage) {
-  for (int j = pixels.y0; j < pixels.y1; ++j) {
-    const auto row = static_cast<std::size_t>((j - y) * cell_side);
-    Vec2f* slopes = details.row(j);
-    for (int i = pixels.x0; i < pixels.x1; ++i) {
-      const std::size_t k = row + static_cast<std::size_t>(i - x);
-      slopes[i] = Vec2f(cell.slope_x[k], cell.slope_y[k]);
-    }
-    if (coverage.empty()) continue;
-    const float* covered = &cell.coverage[row];
-    std::copy(covered + (pixels.x0 - x), covered + (pixels.x1 - x), coverage.row(j) + pixels.x0);
-  }
 }
 
 }  // namespace normalshop

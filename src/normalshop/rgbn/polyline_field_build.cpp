@@ -1,5 +1,7 @@
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <tuple>
 
 #include "normalshop/rgbn/detail/polyline_field.h"
 
@@ -24,6 +26,64 @@ void bend(LineSegment& s, LineSegment& next) {
 }
 
 }  // namespace
+
+void SegmentColumns::append(const LineSegment& s) {
+  const auto flag = [](bool set) { return set ? -1 : 0; };
+  ax.push_back(s.a.x());
+  ay.push_back(s.a.y());
+  dx.push_back(s.direction.x());
+  dy.push_back(s.direction.y());
+  length.push_back(s.length);
+  share.push_back(1.0F / std::max(s.length, 1e-6F));
+  start_x.push_back(s.start_tangent.x());
+  start_y.push_back(s.start_tangent.y());
+  end_x.push_back(s.end_tangent.x());
+  end_y.push_back(s.end_tangent.y());
+  start_bend.push_back(s.start_bend);
+  end_bend.push_back(s.end_bend);
+  half_width.push_back(s.half_width);
+  half_width_rate.push_back(s.half_width_rate);
+  fade.push_back(s.fade);
+  fade_rate.push_back(s.fade_rate);
+  start_cap.push_back(flag(s.start_cap));
+  end_cap.push_back(flag(s.end_cap));
+  even.push_back(flag(s.even));
+  previous.push_back(static_cast<std::int32_t>(s.previous));
+  next.push_back(static_cast<std::int32_t>(s.next));
+}
+
+namespace {
+
+constexpr std::tuple float_columns{
+    &SegmentColumns::ax,         &SegmentColumns::ay,         &SegmentColumns::dx,
+    &SegmentColumns::dy,         &SegmentColumns::length,     &SegmentColumns::share,
+    &SegmentColumns::start_x,    &SegmentColumns::start_y,    &SegmentColumns::end_x,
+    &SegmentColumns::end_y,      &SegmentColumns::start_bend, &SegmentColumns::end_bend,
+    &SegmentColumns::half_width, &SegmentColumns::fade,       &SegmentColumns::half_width_rate,
+    &SegmentColumns::fade_rate};
+constexpr std::tuple index_columns{&SegmentColumns::start_cap, &SegmentColumns::end_cap,
+                                   &SegmentColumns::even, &SegmentColumns::previous,
+                                   &SegmentColumns::next};
+
+}  // namespace
+
+void SegmentColumns::pad() {
+  const auto room = [this](auto... column) {
+    (..., (this->*column).resize((this->*column).size() + most_lanes));
+  };
+  std::apply(room, float_columns);
+  std::apply(room, index_columns);
+}
+
+bool SegmentColumns::same(std::size_t i, const SegmentColumns& others, std::size_t k) const {
+  const auto equal = [&](auto... column) {
+    const auto bits = [&](const auto& ours, const auto& theirs) {
+      return std::memcmp(&ours[i], &theirs[k], sizeof(ours[i])) == 0;
+    };
+    return (... && bits(this->*column, others.*column));
+  };
+  return std::apply(equal, float_columns) && std::apply(equal, index_columns);
+}
 
 PolylineField::PolylineField(const std::vector<FieldShape>& shapes, const Profile& profile,
                              float height, FieldCoverage coverage)

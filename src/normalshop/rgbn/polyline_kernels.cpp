@@ -1,86 +1,16 @@
 #include "normalshop/rgbn/detail/polyline_kernels.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <tuple>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normalshop/rgbn/polyline_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "normalshop/rgbn/detail/polyline-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace normalshop::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<float, most_lanes>;
-using IndexTag = hn::RebindToSigned<Tag>;
-using V = hn::Vec<Tag>;
-using Index = hn::Vec<IndexTag>;
-using M = hn::Mask<Tag>;
-
-constexpr Tag d;
-constexpr IndexTag di;
-
-inline V Dot(V ax, V ay, V bx, V by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); }
-
-inline V Clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
-
-/// Reads columns for lanes that all have to do with one segment.
-struct OneSegment {
-  std::size_t segment;
-  V operator()(const std::vector<float>& column) const { return hn::Set(d, column[segment]); }
-  Index operator()(const std::vector<std::int32_t>& column) const {
-    return hn::Set(di, column[segment]);
-  }
-};
-
-/// Reads columns for lanes each of which has to do with another one: far slower.
-struct ManySegments {
-  Index segments;
-  V operator()(const std::vector<float>& column) const {
-    return hn::GatherIndex(d, column.data(), segments);
-  }
-  Index operator()(const std::vector<std::int32_t>& column) const {
-    return hn::GatherIndex(di, column.data(), segments);
-  }
-};
-
-/// Reads columns for lanes that have to do with segments side by side.
-struct SegmentsFrom {
-  std::size_t first;
-  V operator()(const std::vector<float>& column) const {
-    return hn::LoadU(d, column.data() + first);
-  }
-};
-
-/// Is it the same for all lanes?
-inline bool IsOne(Index segments) {
-  return hn::AllTrue(di, hn::Eq(segments, hn::Set(di, hn::GetLane(segments))));
-}
-inline OneSegment OneOf(Index segments) {
-  return {static_cast<std::size_t>(hn::GetLane(segments))};
-}
 
 inline M IsSet(Index flags) { return hn::RebindMask(d, hn::Lt(flags, hn::Zero(di))); }
-
-/// The nearest place on a straight segment, and the way from there.
-struct Foot {
-  V along, x, y, squared;
-};
-
-template <class Of>
-inline Foot FootOf(const SegmentColumns& s, const Of& of, V px, V py) {
-  const V dx = of(s.dx);
-  const V dy = of(s.dy);
-  const V from_x = hn::Sub(px, of(s.ax));
-  const V from_y = hn::Sub(py, of(s.ay));
-  const V along = Clamp(Dot(from_x, from_y, dx, dy), hn::Zero(d), of(s.length));
-  const V x = hn::Sub(from_x, hn::Mul(along, dx));
-  const V y = hn::Sub(from_y, hn::Mul(along, dy));
-  return {along, x, y, Dot(x, y, x, y)};
-}
 
 /// Of equally near ones the first.
 inline Index NearestOf(const SegmentColumns& s, std::span<const std::uint32_t> list, V px, V py) {
@@ -310,95 +240,6 @@ void LinePlacesOf(const SegmentColumns& s, const LineList& list, const LinePoint
   }
 }
 
-template <class Of>
-inline void OffsetsOf(const SegmentColumns& s, const Of& of, V px, V py, std::size_t i,
-                      SegmentOffsets& out) {
-  const Foot foot = FootOf(s, of, px, py);
-  hn::StoreU(foot.x, d, out.x.data() + i);
-  hn::StoreU(foot.y, d, out.y.data() + i);
-  hn::StoreU(foot.squared, d, out.squared.data() + i);
-}
-
-void SegmentOffsetsOf(const SegmentColumns& segments, std::span<const std::uint32_t> list, float x,
-                      float y, SegmentOffsets& out) {
-  const std::size_t lanes = hn::Lanes(d);
-  const V px = hn::Set(d, x);
-  const V py = hn::Set(d, y);
-  alignas(64) std::array<std::int32_t, most_lanes> indices{};
-  for (std::size_t i = 0; i < list.size(); i += lanes) {
-    const std::size_t count = std::min(lanes, list.size() - i);
-    const std::uint32_t first = list[i];
-    // Neighbours in the line mostly stand side by side.
-    if (list[i + count - 1] - first == count - 1) {
-      OffsetsOf(segments, SegmentsFrom{first}, px, py, i, out);
-      continue;
-    }
-    for (std::size_t k = 0; k < count; ++k) indices[k] = static_cast<std::int32_t>(list[i + k]);
-    OffsetsOf(segments, ManySegments{hn::Load(di, indices.data())}, px, py, i, out);
-  }
-}
-
-/// Beyond all squared distances that count.
-constexpr float very_far = 1e30F;
-
-/// The squared distance of the nearest of them, and which it is; `very_far` ones follow them.
-struct Closest {
-  float squared;
-  std::size_t at;
-};
-
-inline Closest ClosestOf(const SegmentOffsets& offsets, std::size_t count) {
-  const std::size_t lanes = hn::Lanes(d);
-  V least = hn::Set(d, very_far);
-  for (std::size_t i = 0; i < count; i += lanes) {
-    const V squared = hn::LoadU(d, offsets.squared.data() + i);
-    least = hn::IfThenElse(hn::Lt(squared, least), squared, least);  // never what is no number
-  }
-  const V all = hn::MinOfLanes(d, least);
-  for (std::size_t i = 0;; i += lanes) {
-    const intptr_t found =
-        hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, offsets.squared.data() + i), all));
-    if (found >= 0) return {hn::GetLane(all), i + static_cast<std::size_t>(found)};
-  }
-}
-
-void NearestSegmentsOf(const SegmentColumns& segments, std::span<const std::uint32_t> list,
-                       const Circle& circle, float half_width, SegmentOffsets& offsets,
-                       std::vector<std::uint32_t>& kept) {
-  const std::size_t lanes = hn::Lanes(d);
-  SegmentOffsetsOf(segments, list, circle.center.x(), circle.center.y(), offsets);
-  std::fill_n(offsets.squared.begin() + static_cast<std::ptrdiff_t>(list.size()), lanes, very_far);
-  const Closest closest = ClosestOf(offsets, list.size());
-  const float least = std::sqrt(closest.squared);
-  const float radius = circle.radius;
-  if (!(least <= half_width + radius)) return;
-  const V turn = hn::Set(d, least > 2.0F * radius ? radius / (least - radius) : 2.0F);
-  const Vec2f away = offsets.at(closest.at) / std::max(least, 1e-6F);
-  const float farthest = least + 2.0F * radius + 0.01F;
-  std::size_t count = kept.size();
-  kept.resize(count + list.size() + lanes);
-  alignas(64) std::array<std::int32_t, most_lanes> places{};
-  for (std::size_t i = 0; i < list.size(); i += lanes) {
-    const V squared = hn::LoadU(d, offsets.squared.data() + i);
-    const M near = hn::Le(squared, hn::Set(d, farthest * farthest));
-    if (hn::AllFalse(d, near)) continue;
-    const V distance = hn::Sqrt(squared);
-    const V divisor = hn::Max(distance, hn::Set(d, 1e-6F));
-    const V x = hn::Sub(hn::Div(hn::LoadU(d, offsets.x.data() + i), divisor), hn::Set(d, away.x()));
-    const V y = hn::Sub(hn::Div(hn::LoadU(d, offsets.y.data() + i), divisor), hn::Set(d, away.y()));
-    const V change = hn::Min(hn::Add(hn::Sqrt(Dot(x, y, x, y)), turn), hn::Set(d, 2.0F));
-    const V limit =
-        hn::Add(hn::Add(hn::Set(d, least), hn::Mul(change, hn::Set(d, radius))), hn::Set(d, 0.01F));
-    const M keep = hn::And(near, hn::Le(distance, limit));
-    const std::size_t more = hn::CompressStore(hn::Iota(di, static_cast<std::int32_t>(i)),
-                                               hn::RebindMask(di, keep), di, places.data());
-    for (std::size_t k = 0; k < more; ++k) {
-      kept[count++] = list[static_cast<std::size_t>(places[k])];
-    }
-  }
-  kept.resize(count);
-}
-
 }  // namespace normalshop::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -406,93 +247,10 @@ HWY_AFTER_NAMESPACE();
 namespace normalshop {
 
 HWY_EXPORT(LinePlacesOf);
-HWY_EXPORT(SegmentOffsetsOf);
-HWY_EXPORT(NearestSegmentsOf);
-
-void SegmentColumns::append(const LineSegment& s) {
-  const auto flag = [](bool set) { return set ? -1 : 0; };
-  ax.push_back(s.a.x());
-  ay.push_back(s.a.y());
-  dx.push_back(s.direction.x());
-  dy.push_back(s.direction.y());
-  length.push_back(s.length);
-  share.push_back(1.0F / std::max(s.length, 1e-6F));
-  start_x.push_back(s.start_tangent.x());
-  start_y.push_back(s.start_tangent.y());
-  end_x.push_back(s.end_tangent.x());
-  end_y.push_back(s.end_tangent.y());
-  start_bend.push_back(s.start_bend);
-  end_bend.push_back(s.end_bend);
-  half_width.push_back(s.half_width);
-  half_width_rate.push_back(s.half_width_rate);
-  fade.push_back(s.fade);
-  fade_rate.push_back(s.fade_rate);
-  start_cap.push_back(flag(s.start_cap));
-  end_cap.push_back(flag(s.end_cap));
-  even.push_back(flag(s.even));
-  previous.push_back(static_cast<std::int32_t>(s.previous));
-  next.push_back(static_cast<std::int32_t>(s.next));
-}
-
-namespace {
-
-constexpr std::tuple float_columns{
-    &SegmentColumns::ax,         &SegmentColumns::ay,         &SegmentColumns::dx,
-    &SegmentColumns::dy,         &SegmentColumns::length,     &SegmentColumns::share,
-    &SegmentColumns::start_x,    &SegmentColumns::start_y,    &SegmentColumns::end_x,
-    &SegmentColumns::end_y,      &SegmentColumns::start_bend, &SegmentColumns::end_bend,
-    &SegmentColumns::half_width, &SegmentColumns::fade,       &SegmentColumns::half_width_rate,
-    &SegmentColumns::fade_rate};
-constexpr std::tuple index_columns{&SegmentColumns::start_cap, &SegmentColumns::end_cap,
-                                   &SegmentColumns::even, &SegmentColumns::previous,
-                                   &SegmentColumns::next};
-
-}  // namespace
-
-void SegmentColumns::pad() {
-  const auto room = [this](auto... column) {
-    (..., (this->*column).resize((this->*column).size() + most_lanes));
-  };
-  std::apply(room, float_columns);
-  std::apply(room, index_columns);
-}
-
-bool SegmentColumns::same(std::size_t i, const SegmentColumns& others, std::size_t k) const {
-  const auto equal = [&](auto... column) {
-    const auto bits = [&](const auto& ours, const auto& theirs) {
-      return std::memcmp(&ours[i], &theirs[k], sizeof(ours[i])) == 0;
-    };
-    return (... && bits(this->*column, others.*column));
-  };
-  return std::apply(equal, float_columns) && std::apply(equal, index_columns);
-}
 
 void line_places(const SegmentColumns& segments, const LineList& list, const LinePoints& points,
                  LinePlaces& out) {
   HWY_DYNAMIC_DISPATCH(LinePlacesOf)(segments, list, points, out);
-}
-
-namespace {
-
-void make_room(std::size_t count, SegmentOffsets& out) {
-  const std::size_t padded = count + most_lanes;
-  if (out.squared.size() >= padded) return;
-  for (std::vector<float>* column : {&out.x, &out.y, &out.squared}) column->resize(padded);
-}
-
-}  // namespace
-
-void segment_offsets(const SegmentColumns& segments, std::span<const std::uint32_t> list,
-                     const Vec2f& point, SegmentOffsets& out) {
-  make_room(list.size(), out);
-  HWY_DYNAMIC_DISPATCH(SegmentOffsetsOf)(segments, list, point.x(), point.y(), out);
-}
-
-void nearest_segments(const SegmentColumns& segments, std::span<const std::uint32_t> list,
-                      const Circle& circle, float half_width, SegmentOffsets& offsets,
-                      std::vector<std::uint32_t>& kept) {
-  make_room(list.size(), offsets);
-  HWY_DYNAMIC_DISPATCH(NearestSegmentsOf)(segments, list, circle, half_width, offsets, kept);
 }
 
 }  // namespace normalshop

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "normalshop/rgbn/detail/polyline_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -5,22 +7,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "normalshop/rgbn/detail/polyline-inl.h"
 #include "normalshop/rgbn/detail/profile-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace normalshop::HWY_NAMESPACE {
 
-using Tag = hn::CappedTag<float, most_lanes>;
-using IndexTag = hn::RebindToSigned<Tag>;
-using V = hn::Vec<Tag>;
-using Index = hn::Vec<IndexTag>;
-using M = hn::Mask<Tag>;
 using Values = ProfileValues<V>;
-
-constexpr Tag d;
-constexpr IndexTag di;
-
-inline V Dot(V ax, V ay, V bx, V by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); }
 
 /// The places of some of a cell's pixels, and what their segments hold.
 struct Lanes {
@@ -194,6 +187,19 @@ void AddLineOf(const SegmentColumns& segments, const LineProfile& profile, bool 
   }
 }
 
+/// Rows of a whole cell.
+void WriteSlopesOf(const FieldCell& cell, int x, int y, SlopeSpan details) {
+  constexpr hn::CappedTag<float, cell_side> row;
+  for (int j = 0; j < cell_side; ++j) {
+    float* out = details.row(y + j)[x].data();
+    for (std::size_t i = 0; i < cell_side; i += hn::Lanes(row)) {
+      const std::size_t k = static_cast<std::size_t>(j * cell_side) + i;
+      hn::StoreInterleaved2(hn::Load(row, &cell.slope_x[k]), hn::Load(row, &cell.slope_y[k]), row,
+                            out + 2 * i);
+    }
+  }
+}
+
 }  // namespace normalshop::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -201,10 +207,28 @@ HWY_AFTER_NAMESPACE();
 namespace normalshop {
 
 HWY_EXPORT(AddLineOf);
+HWY_EXPORT(WriteSlopesOf);
 
 void add_line(const SegmentColumns& segments, const LineProfile& profile, bool even,
               const LinePlaces& places, FieldCell& field) {
   HWY_DYNAMIC_DISPATCH(AddLineOf)(segments, profile, even, places, field);
+}
+
+void write_cell(const Rect& pixels, int x, int y, const FieldCell& cell, SlopeSpan details,
+                MaskSpan coverage) {
+  const bool whole = pixels.width() == cell_side && pixels.height() == cell_side;
+  if (whole) HWY_DYNAMIC_DISPATCH(WriteSlopesOf)(cell, x, y, details);
+  for (int j = pixels.y0; j < pixels.y1; ++j) {
+    const auto row = static_cast<std::size_t>((j - y) * cell_side);
+    Vec2f* slopes = details.row(j);
+    for (int i = pixels.x0; !whole && i < pixels.x1; ++i) {
+      const std::size_t k = row + static_cast<std::size_t>(i - x);
+      slopes[i] = Vec2f(cell.slope_x[k], cell.slope_y[k]);
+    }
+    if (coverage.empty()) continue;
+    const float* covered = &cell.coverage[row];
+    std::copy(covered + (pixels.x0 - x), covered + (pixels.x1 - x), coverage.row(j) + pixels.x0);
+  }
 }
 
 }  // namespace normalshop

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "normalshop/core/error.h"
@@ -50,6 +51,19 @@ class PenOperator : public EditOperator {
                ? smooth_extent_of(strokes, margin,
                                   options_.closed ? StrokeEnds::Closed : StrokeEnds::Open)
                : extent_of(strokes, margin);
+  }
+
+  /// Between two points their smooth curve, a mean of three lines through them and their
+  /// neighbours, stays within a quarter of their distance.
+  Extent bounds(const std::vector<UnitStroke>& strokes) const override {
+    float longest = 0.0F;
+    for (const UnitStroke& stroke : strokes) {
+      for (std::size_t i = options_.closed ? 0 : 1; i < stroke.size(); ++i) {
+        const UnitPoint& previous = i > 0 ? stroke[i - 1] : stroke.back();
+        longest = std::max(longest, (stroke[i].position - previous.position).norm());
+      }
+    }
+    return extent_of(strokes, 0.5F * options_.width + (options_.smooth ? 0.25F * longest : 0.0F));
   }
 
   Rect run(const OperatorInput& input, SlopeSpan change, MaskSpan coverage) const override {

@@ -159,8 +159,4 @@ class PolylineField {
   Rect bounds_;
 };
 
-/// Puts pixels of a field's cell that begins at (x, y) into images; coverage may be empty.
-void write_cell(const Rect& pixels, int x, int y, const FieldCell& cell, SlopeSpan details,
-                MaskSpan coverage);
-
 }  // namespace normalshop

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "normalshop/core/image.h"
 #include "normalshop/rgbn/detail/polyline_segment.h"
 #include "normalshop/rgbn/profile.h"
 
@@ -85,6 +86,10 @@ struct LineProfile {
 /// |height| is larger it counts, and the larger coverage. `even`: all segments are, as in LineList.
 void add_line(const SegmentColumns& segments, const LineProfile& profile, bool even,
               const LinePlaces& places, FieldCell& field);
+
+/// Puts pixels of a field's cell that begins at (x, y) into images; coverage may be empty.
+void write_cell(const Rect& pixels, int x, int y, const FieldCell& cell, SlopeSpan details,
+                MaskSpan coverage);
 
 /// From the nearest places on a list's segments to a point.
 struct SegmentOffsets {
