@@ -13,6 +13,7 @@ class NoAssets : public normalshop::Assets {
   normalshop::Patch patch(const std::string&) override {
     return {normalshop::SlopeImage(1, 1, normalshop::Vec2f(0.0F, 0.0F)), {}, {}};
   }
+  normalshop::MaskImage mask(const std::string&) override { return {1, 1, 1.0F}; }
   normalshop::Image<float> kernel(const std::string&) override { return {1, 1, 1.0F}; }
   normalshop::Outline text(const std::string&, const std::string&) override { return {}; }
 };

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "normalshop/core/color_map.h"
 #include "normalshop/core/normal_map.h"
@@ -23,7 +23,11 @@ struct TilePlace {
   std::uint32_t set = 0;
   Attribute attribute = Attribute::Normals;
   std::uint32_t tile = 0;
-  auto operator<=>(const TilePlace&) const = default;
+  bool operator==(const TilePlace&) const = default;
+  /// By texture set, attribute and tile.
+  bool operator<(const TilePlace& o) const {
+    return std::tie(set, attribute, tile) < std::tie(o.set, o.attribute, o.tile);
+  }
 };
 
 /// A tile's edited texels as bytes, the same on every machine (docs/document.md), packed

@@ -183,7 +183,8 @@ void PolylineField::prune_gone(const List& gone, const List& kept, const Rect& s
   out.clear();
   if (gone.empty()) return;
   const PolylineField& before = task.changes->before;
-  const auto [center, radius] = circle_around(square);
+  const auto [center, around] = circle_around(square);
+  const float radius = around;  // clang 14 lets no lambda name a binding
   segment_offsets(columns_, kept, center, task.offsets);
   const auto farthest = [&](std::uint32_t shape) {
     float least = before.shapes_[shape].largest_half_width + radius;
