@@ -264,5 +264,16 @@ TEST(EditStack, NamesCopiesOfEdits) {
   }
 }
 
+TEST(EditStack, DoesNotGrowWithoutEnd) {
+  EditStack stack;
+  stack.take({}, 1);
+  const auto twice = [&](std::int64_t step) {
+    stack.take({.step = StackStep::Duplicate}, step);
+    stack.take({.step = StackStep::Merge, .target = step}, step + 1);
+  };
+  for (std::int64_t i = 0; i < 19; ++i) twice(2 + 2 * i);
+  EXPECT_THROW(twice(60), InvalidInput);
+}
+
 }  // namespace
 }  // namespace normalshop::test

@@ -67,6 +67,15 @@ void move_layer(const StackChange& change, std::size_t index, std::vector<Layer>
   layers.insert(at(layers, place), std::move(layer));
 }
 
+/// Files from elsewhere could double layers without end.
+void check_room(std::size_t edits) {
+  constexpr std::size_t most = 1'000'000;
+  if (edits > most) {
+    throw InvalidInput("a layer may have up to " + std::to_string(most) + " edits, not " +
+                       std::to_string(edits));
+  }
+}
+
 void duplicate(const StackChange& change, std::size_t index, std::int64_t id,
                std::vector<Layer>& layers) {
   Layer copy = layers[index];
@@ -90,6 +99,7 @@ void merge(std::size_t index, std::vector<Layer>& layers) {
                        "' must be shown at opacity 1 to be merged: their edits then come one after "
                        "the other");
   }
+  check_room(below.edits.size() + above.edits.size());
   below.edits.insert(below.edits.end(), above.edits.begin(), above.edits.end());
   layers.erase(at(layers, index));
 }
