@@ -99,9 +99,7 @@ void print_layer(const Layer& layer) {
 
 /// The topmost first, as they lie.
 void print_layers(const EditStack& stack) {
-  for (auto layer = stack.layers.rbegin(); layer != stack.layers.rend(); ++layer) {
-    print_layer(*layer);
-  }
+  for (std::size_t i = stack.layers.size(); i-- > 0;) print_layer(stack.layers[i]);
 }
 
 void list_layers(const LayerFlags& flags) {

@@ -6,6 +6,7 @@
 #include "demo_shape.h"
 #include "noise.h"
 #include "support/same_codes.h"
+#include "support/sanitized.h"
 #include <gtest/gtest.h>
 
 #include "normalshop/core/error.h"
@@ -96,6 +97,7 @@ TEST(DemoHead, ChartsKeepRoomForTheGutter) {
 }
 
 TEST(DemoHead, BothSidesOfSeamsReadAlike) {
+  NORMALSHOP_SKIP_FIGURES();
   DemoModelOptions options;
   options.map_size = 1024;
   const DemoModel made = make_demo_model(options);

@@ -3,6 +3,7 @@
 
 #include "document/faulty_disk.h"
 #include "document/stored_document.h"
+#include "support/sanitized.h"
 
 #include "normalshop/core/error.h"
 #include "normalshop/document/store/database.h"
@@ -17,7 +18,7 @@ using Fault = FaultyDisk::Fault;
 /// How many of the points are tried; NORMALSHOP_CRASHES sets another number.
 std::size_t wanted_points() {
   const char* wanted = std::getenv("NORMALSHOP_CRASHES");
-  return wanted != nullptr ? static_cast<std::size_t>(std::atol(wanted)) : 25;
+  return wanted != nullptr ? static_cast<std::size_t>(std::atol(wanted)) : sanitized ? 8 : 25;
 }
 
 class CrashTest : public StoredSquare {

@@ -275,8 +275,8 @@ HistoryMove DocumentFile::walk(std::optional<std::int64_t> to, const TileCheck& 
       goal = history.parent(*goal);
     }
   }
-  for (auto step = ahead.rbegin(); step != ahead.rend(); ++step) {
-    note(*step, false, history.step_on(*step));
+  for (; !ahead.empty(); ahead.pop_back()) {
+    note(ahead.back(), false, history.step_on(ahead.back()));
   }
   std::sort(move.places.begin(), move.places.end());
   move.places.erase(std::unique(move.places.begin(), move.places.end()), move.places.end());

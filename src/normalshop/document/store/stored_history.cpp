@@ -269,6 +269,7 @@ std::vector<PackedTile> StoredHistory::tiles_after(std::int64_t step, std::int64
     row.reset();
   }
   std::vector<PackedTile> tiles;
+  tiles.reserve(versions.size());
   for (const auto& [where, version] : versions) {
     tiles.push_back({where, layer, version ? bytes_of(*version) : std::string()});
   }
