@@ -181,8 +181,7 @@ TEST_F(LayerVerbs, ReplayOnAnotherModelTellsWhatMisses) {
   EXPECT_FALSE(fs::exists(path("far.nshop")));
   Arguments skipping = onto;
   skipping.emplace_back("--skip-failing");
-  EXPECT_NE(call(skipping).err.find("left out: step 2"),
-            std::string::npos);
+  EXPECT_NE(call(skipping).err.find("left out: step 2"), std::string::npos);
   EXPECT_TRUE(fs::exists(path("far.nshop")));
 }
 

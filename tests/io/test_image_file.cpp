@@ -194,7 +194,8 @@ TEST(ImageFile, RandomBytesAreErrorsOrImages) {
     write_image(path,
                 noise(32, 32, 3, std::strcmp(extension, ".exr") ? CodeType::U8 : CodeType::F32));
     const std::string whole = read_file(path);
-    for (int attempt = 0; attempt < (test::sanitized ? 8 : 40); ++attempt) {  // a fuzzer does it, too
+    for (int attempt = 0; attempt < (test::sanitized ? 8 : 40);
+         ++attempt) {  // a fuzzer does it, too
       std::string bytes = whole;
       const std::size_t keep = attempt % 2 == 0 ? 0 : 20;
       for (std::size_t i = keep; i < bytes.size(); ++i) {

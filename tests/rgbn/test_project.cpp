@@ -1,8 +1,8 @@
 #include <cmath>
 #include <vector>
 
-#include "support/slope_fields.h"
 #include "support/sanitized.h"
+#include "support/slope_fields.h"
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
