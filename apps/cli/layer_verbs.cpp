@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -42,8 +43,7 @@ const std::vector<std::pair<std::string, StackStep>>& actions() {
 std::int64_t whole_number(const std::string& text, const char* flag) {
   const auto number = read_number(text);
   constexpr double most = 1e9;
-  if (!number || *number != static_cast<double>(static_cast<std::int64_t>(*number)) ||
-      *number < 0.0 || *number > most) {
+  if (!number || !(*number >= 0.0 && *number <= most) || *number != std::floor(*number)) {
     throw WrongUse(flag, "must be a whole number, not '" + text + "'");
   }
   return static_cast<std::int64_t>(*number);

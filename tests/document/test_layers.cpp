@@ -53,7 +53,8 @@ TEST_F(LayersTest, AnEditOfTheLowerOneMakesTheUpperOneAnew) {
   add_layer(document);
   document.apply(smooth());
   document.choose_layer(first_layer);
-  EXPECT_GT(document.apply(second()).pushed.changed, 50U);
+  Document alone = with({first()});
+  EXPECT_EQ(document.apply(second()).pushed.changed, alone.apply(second()).pushed.changed);
   expect_shows(document, with({first(), second(), smooth()}), "below");
   EXPECT_TRUE(document.undo());
   expect_shows(document, with({first(), smooth()}), "undone");
@@ -273,6 +274,7 @@ TEST(EditStack, DoesNotGrowWithoutEnd) {
   };
   for (std::int64_t i = 0; i < 19; ++i) twice(2 + 2 * i);
   EXPECT_THROW(twice(60), InvalidInput);
+  EXPECT_THROW(stack.take({.step = StackStep::Duplicate}, 70), InvalidInput);
 }
 
 }  // namespace

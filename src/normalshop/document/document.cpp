@@ -69,6 +69,7 @@ EditReport Document::apply(const Edit& edit, const TransferOptions& transfer) {
 
 std::unique_ptr<LiveEdit> Document::begin(Edit edit) {
   assert(!live_);
+  check_seen(active_layer());
   // Its constructor is the document's alone.
   return std::unique_ptr<LiveEdit>(new LiveEdit(*this, std::move(edit)));
 }

@@ -118,6 +118,8 @@ class Document {
   /// Adds a step to the file, and makes the layers anew that it changes.
   EditReport restack(const NewStep& step, const Progress& progress);
   Edit load_edit(std::int64_t step) const;
+  /// Throws InvalidInput for a hidden layer.
+  void check_seen(std::int64_t layer) const;
   /// Can an edit be made on what the maps show?
   bool shows_active_layer() const;
   void take_stack(EditStack stack);

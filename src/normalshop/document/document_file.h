@@ -35,7 +35,7 @@ struct HistoryEntry {
   std::size_t texels_changed = 0;
   bool undone = false;
 };
-/// "pen", "pen (changes edit 3)", "hides layer 2".
+/// "pen in layer 2", "pen: changes edit 3", "sets layer 2: hidden".
 std::string sentence(const HistoryEntry& entry);
 
 /// A step to be added.

@@ -280,6 +280,7 @@ HistoryMove DocumentFile::walk(std::optional<std::int64_t> to, const TileCheck& 
   }
   std::sort(move.places.begin(), move.places.end());
   move.places.erase(std::unique(move.places.begin(), move.places.end()), move.places.end());
+  if (!move.on.empty()) fold(history.path_to(to));  // throws for steps that cannot be
   check_revealed(move, check);
   transaction.commit();
   return move;

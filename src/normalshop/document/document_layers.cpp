@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "normalshop/core/error.h"
 #include "normalshop/document/apply_edit.h"
@@ -107,6 +108,12 @@ void Document::choose_layer(std::int64_t layer) {
   active_layer_ = layer;
 }
 
+void Document::check_seen(std::int64_t layer) const {
+  if (!stack_.layers[stack_.find(layer)].hidden) return;
+  throw InvalidInput("layer " + std::to_string(layer) +
+                     " is hidden; show it, or choose another one, to edit it");
+}
+
 bool Document::shows_active_layer() const { return stack_.on_top(stack_.find(active_layer())); }
 
 void Document::change(const StackChange& change, const Progress& progress) {
@@ -122,15 +129,13 @@ EditReport Document::restack(const NewStep& step, const Progress& progress) {
   if (file_->read_only())
     throw DocumentError("'" + file_->path().string() + "' is write-protected");
   const StackChange& change = step.change;
-  if (change.step == StackStep::Edit && stack_.layers[stack_.find(change.target)].hidden) {
-    throw InvalidInput("layer " + std::to_string(change.target) +
-                       " is hidden; show it, or choose another one, to edit it");
-  }
+  if (change.step == StackStep::Edit) check_seen(change.target);
   const std::int64_t id = file_->next_step();
   EditStack after = stack_;
   after.take(change, id);
   NewStep added = step;
   EditReport report;
+  bool first = true;
   const MapsBefore before(storage_, true);
   try {
     LayerRebuild rebuild(
@@ -139,8 +144,10 @@ EditReport Document::restack(const NewStep& step, const Progress& progress) {
           return step.edit != nullptr && recipe == id ? *step.edit : load_edit(recipe);
         },
         [&](const Edit& edit) {
-          report = apply_edit(edit, mesh_, seams_, cover_, storage_, {});
-          added.texels_changed += report.pushed.changed;
+          const EditReport made = apply_edit(edit, mesh_, seams_, cover_, storage_, {});
+          added.texels_changed += made.pushed.changed;
+          // An edit that is added comes before those that stand on it.
+          if (std::exchange(first, false)) report = made;
         });
     const std::vector<TileChange> changes = rebuild.rebuild(stack_, after, progress);
     file_->add(added, changes);

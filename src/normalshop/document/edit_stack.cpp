@@ -52,11 +52,24 @@ std::size_t place_of(const StackChange& change, std::size_t places) {
   return static_cast<std::size_t>(*change.place);
 }
 
+/// Files from elsewhere could double layers without end.
+void check_room(const std::vector<Layer>& layers, const Layer& added) {
+  constexpr std::size_t most_layers = 10'000;
+  constexpr std::size_t most_edits = 1'000'000;
+  std::size_t edits = added.edits.size();
+  for (const Layer& layer : layers) edits += layer.edits.size();
+  if (layers.size() >= most_layers || edits > most_edits) {
+    throw InvalidInput("a document may have up to " + std::to_string(most_layers) + " layers and " +
+                       std::to_string(most_edits) + " edits in them");
+  }
+}
+
 void add_layer(const StackChange& change, std::int64_t id, std::vector<Layer>& layers) {
   Layer layer;
   layer.id = id;
   layer.name = "layer " + std::to_string(id);
   set(change, layer);
+  check_room(layers, layer);
   layers.insert(at(layers, place_of(change, layers.size() + 1)), std::move(layer));
 }
 
@@ -67,18 +80,10 @@ void move_layer(const StackChange& change, std::size_t index, std::vector<Layer>
   layers.insert(at(layers, place), std::move(layer));
 }
 
-/// Files from elsewhere could double layers without end.
-void check_room(std::size_t edits) {
-  constexpr std::size_t most = 1'000'000;
-  if (edits > most) {
-    throw InvalidInput("a layer may have up to " + std::to_string(most) + " edits, not " +
-                       std::to_string(edits));
-  }
-}
-
 void duplicate(const StackChange& change, std::size_t index, std::int64_t id,
                std::vector<Layer>& layers) {
   Layer copy = layers[index];
+  check_room(layers, copy);
   copy.id = id;
   copy.name += " copy";
   for (std::size_t i = 0; i < copy.edits.size(); ++i) {
@@ -99,7 +104,6 @@ void merge(std::size_t index, std::vector<Layer>& layers) {
                        "' must be shown at opacity 1 to be merged: their edits then come one after "
                        "the other");
   }
-  check_room(below.edits.size() + above.edits.size());
   below.edits.insert(below.edits.end(), above.edits.begin(), above.edits.end());
   layers.erase(at(layers, index));
 }

@@ -38,6 +38,7 @@ struct Layer {
   std::vector<StackEdit> edits;
   bool operator==(const Layer&) const = default;
 
+  bool seen() const { return !hidden && opacity > 0.0F; }
   /// Does it show as its edits left it?
   bool plain() const { return !hidden && opacity == 1.0F; }
   /// That are enabled, by the steps that hold their recipes.

@@ -90,7 +90,7 @@ void blend_colors_of(const PackedTile& above, const Layer& layer, ColorMap& map)
 
 bool any_shown(std::span<const std::int64_t> layers, const LayersShown& shown) {
   for (std::size_t i = 0; i < shown.layers.size(); ++i) {
-    const bool seen = covers(shown, i) || !shown.layers[i].hidden;
+    const bool seen = covers(shown, i) || shown.layers[i].seen();
     if (seen && std::find(layers.begin(), layers.end(), shown.layers[i].id) != layers.end())
       return true;
   }
@@ -114,7 +114,7 @@ void show_tile(const TilePlace& place, const std::vector<PackedTile>& tiles,
   for (; next < shown.layers.size(); ++next) {
     const Layer& layer = shown.layers[next];
     const PackedTile* tile = tile_of(tiles, layer.id);
-    if (tile == nullptr || layer.hidden) continue;
+    if (tile == nullptr || !layer.seen()) continue;
     check_fits(*tile, storage);
     StorageSet& set = storage.sets[place.set];
     if (place.attribute == Attribute::Normals) {

@@ -43,6 +43,7 @@ OpenOptions import_options(const std::shared_ptr<DocumentFile>& file, const Repl
     options.flip_v = wanted.flip_v;
     options.normal_maps.clear();
     options.albedos.clear();
+    options.files = disk_files();
   }
   if (!wanted.normal_maps.empty()) {
     options.normal_maps = wanted.normal_maps;
@@ -52,7 +53,7 @@ OpenOptions import_options(const std::shared_ptr<DocumentFile>& file, const Repl
   // Other maps may mean something else.
   if (!wanted.model.empty() || !wanted.normal_maps.empty()) {
     options.conventions.clear();
-    options.files = std::make_shared<HeldOrDisk>(options.files);
+    if (wanted.model.empty()) options.files = std::make_shared<HeldOrDisk>(options.files);
   }
   return options;
 }
@@ -98,7 +99,9 @@ class Replay {
     }
   }
   static void set_look(Document& document, std::int64_t made, const Layer& layer) {
-    if (layer.plain() && (made != first_layer || layer.name == EditStack().layers[0].name)) return;
+    if (layer.plain() && layer.blend == LayerBlend::Linear &&
+        (made != first_layer || layer.name == EditStack().layers[0].name))
+      return;
     StackChange look{.step = StackStep::SetLayer, .target = made};
     if (made == first_layer) look.name = layer.name;
     look.opacity = layer.opacity;
