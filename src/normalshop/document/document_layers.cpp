@@ -10,6 +10,14 @@
 /// Documents on file: their layers and history.
 namespace normalshop {
 
+namespace {
+
+DocumentFile::TileCheck fits(const StorageAtlas& storage) {
+  return [&storage](const PackedTile& tile) { check_fits(tile, storage); };
+}
+
+}  // namespace
+
 Edit Document::load_edit(std::int64_t step) const {
   const auto assets = assets_of_(file_->files_of(step));
   const std::string name = file_->path().string() + ": step " + std::to_string(step);
@@ -82,21 +90,21 @@ void Document::follow(const HistoryMove& move) {
 
 bool Document::undo() {
   assert(file_ && !live_);
-  const auto move = file_->undo([&](const PackedTile& tile) { check_fits(tile, storage_); });
+  const auto move = file_->undo(fits(storage_));
   if (move) follow(*move);
   return move.has_value();
 }
 
 bool Document::redo() {
   assert(file_ && !live_);
-  const auto move = file_->redo([&](const PackedTile& tile) { check_fits(tile, storage_); });
+  const auto move = file_->redo(fits(storage_));
   if (move) follow(*move);
   return move.has_value();
 }
 
 void Document::jump(std::optional<std::int64_t> step) {
   assert(file_ && !live_);
-  follow(file_->jump(step, [&](const PackedTile& tile) { check_fits(tile, storage_); }));
+  follow(file_->jump(step, fits(storage_)));
 }
 
 std::int64_t Document::active_layer() const {

@@ -21,16 +21,7 @@ StoredHistory::Step StoredHistory::position() const {
 }
 
 StoredHistory::Step StoredHistory::parent(std::int64_t step) const {
-  Statement row(database_, "SELECT parent FROM steps WHERE id = ?");
-  row.bind(1, step);
-  if (!row.step()) database_.fail("is damaged: its step " + std::to_string(step) + " is missing");
-  const Step parent = row.optional_integer(0);
-  // Otherwise a history could run in circles.
-  if (parent && *parent >= step) {
-    database_.fail("is damaged: its step " + std::to_string(step) + " is older than the one that " +
-                   "it was made on");
-  }
-  return parent;
+  return this->step(step).parent;
 }
 
 StoredHistory::Step StoredHistory::next(Step step) const {
@@ -53,6 +44,10 @@ StoredStep StoredHistory::read_step(const Statement& row) const {
   step.operation = std::string(row.bytes(5));
   step.texels_changed = static_cast<std::size_t>(row.integer(6));
   const std::string name = "its step " + std::to_string(step.id);
+  // Otherwise a history could run in circles.
+  if (step.parent && *step.parent >= step.id) {
+    database_.fail("is damaged: " + name + " is older than the one that it was made on");
+  }
   if (!from_name(row.bytes(2), step.change.step)) {
     database_.fail("is damaged: " + name + " is of no kind that this program knows");
   }
@@ -75,7 +70,7 @@ StoredStep StoredHistory::step(std::int64_t id) const {
 std::vector<StoredStep> StoredHistory::path_to(Step step) const {
   std::vector<StoredStep> path;
   Statement row(database_, std::string(step_columns) + "FROM steps WHERE id = ?");
-  for (Step at = step; at; at = parent(*at)) {
+  for (Step at = step; at; at = path.back().parent) {
     row.bind(1, *at);
     if (!row.step()) database_.fail("is damaged: its step " + std::to_string(*at) + " is missing");
     path.push_back(read_step(row));
