@@ -140,6 +140,8 @@ class DocumentFile {
   std::vector<std::string> check() const;
   /// Version, size, texture sets and history, for people and programs.
   Value summary() const;
+  /// Throws DocumentError for a tile that is damaged as `what` says.
+  [[noreturn]] void fail_at(const TilePlace& place, const char* what) const;
   /// "the tile 3, 5 of the normals of 'skin'".
   std::string name_of_tile(const TilePlace& place) const;
 

@@ -214,13 +214,17 @@ std::int64_t DocumentFile::add(const NewStep& step, const std::vector<TileChange
   return id;
 }
 
+void DocumentFile::fail_at(const TilePlace& place, const char* what) const {
+  state_->database.fail("is damaged: " + name_of_tile(place) + " " + what);
+}
+
 void DocumentFile::check_revealed(const HistoryMove& move, const TileCheck& check) const {
   const auto check_all = [&](const std::vector<PackedTile>& tiles) {
     for (const PackedTile& tile : tiles) {
       try {
         check(tile);
       } catch (const InvalidInput& error) {
-        state_->database.fail("is damaged: " + name_of_tile(tile.place) + " " + error.what());
+        fail_at(tile.place, error.what());
       }
     }
   };

@@ -46,8 +46,7 @@ void Document::show(const TilePlace& place, const std::vector<PackedTile>& tiles
   try {
     show_tile(place, tiles, {stack_.layers}, storage_);
   } catch (const InvalidInput& error) {
-    throw DocumentError("'" + file_->path().string() +
-                        "' is damaged: " + file_->name_of_tile(place) + " " + error.what());
+    file_->fail_at(place, error.what());
   }
 }
 

@@ -102,8 +102,7 @@ void LayerRebuild::show(const LayersShown& shown) {
     try {
       show_tile(place, tiles, shown, storage_);
     } catch (const InvalidInput& error) {
-      throw DocumentError("'" + file_.path().string() +
-                          "' is damaged: " + file_.name_of_tile(place) + " " + error.what());
+      file_.fail_at(place, error.what());
     }
   }
   for (std::size_t i = 0; i < storage_.sets.size(); ++i) {
